@@ -8,17 +8,18 @@ program computes. So no text of a program is kept twice, and a change of the wri
     KEY NUMBERS                        machine and job: mm, rad, s, as the planner has them
     roll NAME                          then its settings, motion, tooth, plunge and nodes: one path of the cutter
     degree N                           of the blocks between its nodes: 1 where the line is missing, else 3 or 5
-    to NUMBERS                         or so, of a hobbed member, the end of every planned block: X Y Z A B C, seconds
+    to NUMBERS                         or so, of a hobbed member, the end of every planned block: X Y Z A B C, seconds,
+                                       and where it has a degree a_2, a_3 .. of each axis
     pass ROLL LIFT ANGLE DWELL         one tooth space: where the path is raised and turned to
     c TEXT, n TEXT                     a line; a line with a number
     r TEXT, b TEXT                     the same for every node but the first
     s TEXT, e TEXT                     a line where the sum is right, and one where the file was edited
 
 Slots are {NAME}, {TIME}, {UP}, {X} {Y} {Z} {A} {B} {C} of a node, and of the block that ends there {F} and {PX} ..
-{PB}, the end and the coefficients of a polynomial; {{ is a brace.
+{PC}, the end and the coefficients of a polynomial; {{ is a brace.
 
 Blocks of generated flanks, straight ones and polynomials, are computed from the settings. Rolls of face hobbing are
-planned by searches that are not in the C library: they stand there as positions and times.
+planned by searches that are not in the C library: they stand there as positions, coefficients and times.
 """
 
 from __future__ import annotations
@@ -127,7 +128,11 @@ def _roll_lines(form: _Form) -> Iterator[str]:
         motion = motion_of(flank)
         yield f"roll {cut.tool}_{stage}"
         if plan.member.process == "face_hobbing":
-            yield from (f"to {_numbers(row)}" for row in np.column_stack([one.axes, np.append(0.0, one.seconds)]))
+            columns = [one.axes, np.append(0.0, one.seconds)]
+            if one.bends is not None:
+                yield f"degree {one.bends.shape[2] + 1}"
+                columns.append(np.vstack([np.zeros(one.bends[0].size), one.bends.reshape(len(one.seconds), -1)]))
+            yield from (f"to {_numbers(row)}" for row in np.column_stack(columns))
             continue
         yield f"settings {_numbers(flank.vector)}"
         if motion.any():

@@ -55,6 +55,8 @@ _ALL = AXES + CUTTER_AXIS
 #: What may turn without end.
 _TURNING = "A" + CUTTER_AXIS
 _HALF_RESOLUTION_DEG = 5e-7
+#: Through which PO of a modulo axis may count on [unconfirmed].
+_TURN = 360.0
 _LARGEST_COORDINATE = 1e6
 
 
@@ -76,7 +78,8 @@ class PathRow(NamedTuple):
     inner: bool = False
     """Whether the row ends within a block of POLY."""
     way: tuple[tuple[float, ...], ...] = ()
-    """Of a block of POLY: the ends of the straight parts in which it is followed, degrees, the last one left out."""
+    """Of a block of POLY: the ends of the straight parts in which it is followed, degrees, the last one left out;
+    with a sixth value where C is an axis."""
     shares: tuple[float, ...] = ()
     """And the part of the time that each of them takes."""
 
@@ -84,7 +87,10 @@ class PathRow(NamedTuple):
         """The rows in which a block is followed: itself, where it is straight."""
         whole = self._replace(way=(), shares=())
         for position, share in zip(self.way, self.shares, strict=False):
-            yield whole._replace(position=position, seconds=share * self.seconds, inner=True)
+            cutter = position[len(AXES)] if len(position) > len(AXES) else self.cutter
+            yield whole._replace(
+                position=position[: len(AXES)], cutter=cutter, seconds=share * self.seconds, inner=True
+            )
         yield whole._replace(seconds=self.shares[-1] * self.seconds) if self.shares else whole
 
 
@@ -177,7 +183,7 @@ class ControlState(State):
         )
 
     def _curve(self, block: Block, before: dict[str, float], number: Number) -> tuple[np.ndarray, np.ndarray]:
-        """Ends (n,5) of the straight parts of a block of polynomials and what of its path each of them is (n,).
+        """Ends (n,5), or (n,6) with C, of the straight parts of a block of polynomials, and the length (n,) of each.
 
         Without POLY the control drives straight to the end points, and says nothing.
         """
@@ -185,19 +191,24 @@ class ControlState(State):
         bent = {axis: word for axis, word in words.items() if word.coefficients}
         if self.modal["motion"] != "POLY" or not bent:
             return np.empty((0, len(AXES))), np.empty(0)
-        if unknown := [axis for axis in AXES if axis not in before]:
+        if unknown := [axis for axis in _ALL if axis not in before and (axis in AXES or axis in words)]:
             self._refuse(block, next(iter(bent)), f"POLY from an unknown position of {' '.join(unknown)}")
         for axis, word in words.items():
             if axis not in self.feed_axes and (word.coefficients or self.position[axis] != before.get(axis)):
                 what = f"{word.text} while FGROUP leaves {axis} out: what it follows depends on UPATH or SPATH"
                 self._refuse(block, axis, what)
+        for axis, word in words.items():
+            if self.counting.get(axis) is False and abs(self.position[axis] - before[axis]) >= _TURN:
+                what = f"{word.text} turns {axis} by {self.position[axis] - before[axis]:.0f} degrees"
+                self._refuse(block, axis, f"{what}: whether PO of a modulo axis takes it there is not known")
+        moved = _ALL if CUTTER_AXIS in before else AXES
         coefficients = {
-            AXES.index(axis): [number(node, word.column) for node in word.coefficients] for axis, word in bent.items()
+            moved.index(axis): [number(node, word.column) for node in word.coefficients] for axis, word in bent.items()
         }
         interval = number(block.words["PL"].value, block.words["PL"].column) if "PL" in block.words else 1.0
-        ends = [[where[axis] for axis in AXES] for where in (before, self.position)]
+        ends = [[where[axis] for axis in moved] for where in (before, self.position)]
         weights = [float(axis in self.feed_axes) for axis in "XYZ"]
-        weights += [self.feed_radius[axis] / DEGREE_IS_MM * (axis in self.feed_axes) for axis in "AB"]
+        weights += [self.feed_radius[axis] / DEGREE_IS_MM * (axis in self.feed_axes) for axis in moved[3:]]
         return followed(polynomials(ends[0], ends[1], coefficients, interval), np.array(weights))
 
     def _target(self, axis: str, block: Block, value: float, rapid: bool) -> float:

@@ -11,7 +11,7 @@ import math
 import re
 from collections.abc import Iterator
 
-from gearmath.machine.control.expression import AXES, Constant, Node, shown
+from gearmath.machine.control.expression import AXES, CUTTER_AXIS, Constant, Node, shown
 from gearmath.machine.control.refused import instead
 from gearmath.machine.control.structure import Keyword, structured
 from gearmath.machine.control.text import check_file_name, check_program_name, divided
@@ -19,6 +19,7 @@ from gearmath.machine.control.tree import Block, Command, Definition, ParsedProg
 from gearmath.machine.control.vocabulary import COMMANDS, RESERVED, STRUCTURE, TYPES
 from gearmath.machine.control.words import TARGET, WordScanner
 
+_ALL = AXES + CUTTER_AXIS
 _SKIP = re.compile(r"/[0-9]?(?![0-9])")
 _NUMBERED = re.compile(r"[N:]([0-9]+)(?![0-9.=_])")
 _LABEL = re.compile(r"([A-Z_]{2}[A-Z0-9_]*):(?!=)")
@@ -221,7 +222,7 @@ class _AtLine(WordScanner):
         return tuple(words.items())
 
     def _axes(self) -> tuple[tuple[str, Node], ...]:
-        axes = self.match(re.compile(rf"[ \t]*(?:[{AXES}][ \t]*(?:,[ \t]*[{AXES}][ \t]*)*)?\)"))
+        axes = self.match(re.compile(rf"[ \t]*(?:[{_ALL}][ \t]*(?:,[ \t]*[{_ALL}][ \t]*)*)?\)"))
         if axes is None:
             self.refuse("FGROUP takes axes with commas between them")
-        return tuple((axis, Constant(0.0)) for axis in axes[0] if axis in AXES)
+        return tuple((axis, Constant(0.0)) for axis in axes[0] if axis in _ALL)

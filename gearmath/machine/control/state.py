@@ -116,7 +116,7 @@ class State:
     shift: dict[str, float] = field(default_factory=dict)
     feed: float | None = None
     feed_axes: str = ""
-    feed_radius: dict[str, float] = field(default_factory=lambda: {"A": DEGREE_IS_MM, "B": DEGREE_IS_MM})
+    feed_radius: dict[str, float] = field(default_factory=lambda: dict.fromkeys("ABC", DEGREE_IS_MM))
     counting: dict[str, bool] = field(default_factory=dict)
     turns: dict[str, float] = field(default_factory=dict)
     """By how much the position of an axis is more than the number that DC, ACP or ACN last gave it: whole turns."""

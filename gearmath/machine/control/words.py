@@ -35,7 +35,7 @@ _TOOL = re.compile(r'T[ \t]*=[ \t]*"([A-Za-z0-9_]{1,31})"(?=[ \tA-Z]|$)')
 _ADDRESS = re.compile(rf"([{AXES}{CUTTER_AXIS}FSD]|SPOS|MEAS|ADIS|ADISPOS|CTOL|OTOL|OVR|OVRRAP|PL)[ \t]*=(?!=)[ \t]*")
 _WAY = re.compile(r"(DC|IC|AC|ACP|ACN|PO)\(")
 _POLYNOMIAL = re.compile(rf"PO\[([{AXES}{CUTTER_AXIS}])\][ \t]*=[ \t]*\(")
-_GROUP_RADIUS = re.compile(rf"(FGREF|ACC)\[([{AXES}])\][ \t]*=[ \t]*")
+_GROUP_RADIUS = re.compile(rf"(FGREF|ACC)\[([{AXES}{CUTTER_AXIS}])\][ \t]*=[ \t]*")
 #: A variable that is given a value.
 TARGET = re.compile(r"R[0-9]+(?=[ \t]*=[^=])|(?:R(?=\[)|[A-Z_][A-Z0-9_]+)(?=\[|[ \t]*=[^=])")
 

@@ -125,7 +125,7 @@ def _hobbing_run(
     if still.any():
         line = int(path.line[np.argmax(still)])
         raise InputError(f"line {line} cuts while the spindle is no axis C; the {name} is face hobbed")
-    axes, turned, lines = path.axes, path.cutter, path.line
+    axes, turned, lines, inner = path.axes, path.cutter, path.line, path.inner
     if errors is not None:
         spec, index = member.flank(cut.flanks[0]), index_errors(errors.work_axis, member.teeth, errors.seed)
         settings, given = spec.nominal.vector, (machine.pivot, motion_of(spec))
@@ -135,9 +135,10 @@ def _hobbing_run(
         six = with_setting_errors(six, settings, errors.setting_errors(name), *given)
         axes = with_axis_errors(with_backlash(six[:, :5], errors), errors)
         turned, cutting, lines = six[:, 5], cutting[own], lines[own]
+        inner = inner[own] if len(inner) else inner
     cutter = cutter_of(member, cut.flanks, None, edge_radius)
     spaces = np.full(len(cutting), -1)
-    return CuttingRun(cut, cutter, axes, cutting, spaces, lines, blades_of(member, edge_radius), turned)
+    return CuttingRun(cut, cutter, axes, cutting, spaces, lines, blades_of(member, edge_radius), turned, inner)
 
 
 def _spaces(axes: np.ndarray, cutting: np.ndarray, member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:

@@ -62,7 +62,7 @@ def entry_within_block(degree: int = 1) -> Kernel:
     rest = kernel("line_entry").inputs[1:]
     symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in (*ends, fraction, *rest)]
     powers, s, others = symbols[: len(ends)], symbols[len(ends)], symbols[len(ends) + 1 :]
-    where = powers[0] + s * (powers[1] - powers[0]) if degree == 1 else _horner(powers, s)
+    where = powers[0] + s * (powers[1] - powers[0]) if degree == 1 else horner(powers, s)
     distance = kernel("line_entry").function(where, *others)
     second, gradient = ca.hessian(distance, s)
     function = ca.Function(
@@ -81,7 +81,8 @@ def entry_within_block(degree: int = 1) -> Kernel:
     )
 
 
-def _horner(powers: list[ca.SX], s: ca.SX) -> ca.SX:
+def horner(powers: list[ca.SX], s: ca.SX) -> ca.SX:
+    """A polynomial of s from the coefficients of its powers, the lowest first."""
     value = powers[-1]
     for coefficient in reversed(powers[:-1]):
         value = coefficient + s * value
@@ -187,9 +188,9 @@ class ExactPass:
         return distance, np.minimum(distance, distance + (slope + curvature * change / 2) * change), change
 
 
-def check_tolerance(tolerance: float, decimals: float = ROUNDING) -> None:
+def check_tolerance(tolerance: float, decimals: float = ROUNDING, low: float = TOLERANCES[0]) -> None:
     """Raises InputError for a tolerance [mm] out of range; ``decimals`` [mm] is what printed ones may take of it."""
-    low, high = TOLERANCES
+    high = TOLERANCES[1]
     if not low <= tolerance <= high:
         raise InputError(
             f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "

@@ -19,7 +19,7 @@ from gearmath.bevel.method import motion_of
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.machine.planning.blocks import ExactPass, fewest_nodes, on_one_machine
+from gearmath.machine.planning.blocks import ExactPass, fewest_nodes, horner, on_one_machine
 from gearmath.machine.planning.feeds import SHORTEST, check_feed
 from gearmath.machine.planning.path import Cut, axis_positions, roll_range
 from gearmath.specs.bevel_set import Flank, Member
@@ -39,15 +39,18 @@ _SAMPLES = np.linspace(0.0, 1.0, 65)
 _BETWEEN_SAMPLES = 1.002
 
 
-def degree_for(machine: MillingMachine) -> int:
-    """Of the blocks that the control takes. Raises InputError naming key, value and limit where it takes none."""
+def degree_for(machine: MillingMachine, axes: int = _AXES) -> int:
+    """Of the blocks that the control takes for five or six axes.
+
+    Raises InputError naming key, value and limit where it takes none.
+    """
     values = machine.control.polynomial_values
-    if values < CUBIC * _AXES:
+    if values < CUBIC * axes:
         raise InputError(
-            f"control.polynomial_values = {values} of {machine.name}: cubic blocks of five axes have {CUBIC * _AXES} "
-            "values, write straight ones"
+            f"control.polynomial_values = {values} of {machine.name}: cubic blocks of {axes} axes have "
+            f"{CUBIC * axes} values, write straight ones"
         )
-    return QUINTIC if values >= QUINTIC * _AXES else CUBIC
+    return QUINTIC if values >= QUINTIC * axes else CUBIC
 
 
 @cache
@@ -107,19 +110,30 @@ class QuinticPass(CurvedPass):
 
 def powers_of(flank: Flank, nodes: np.ndarray, pivot_height: float, pivot: np.ndarray, degree: int) -> np.ndarray:
     """Coefficients (n-1, degree + 1, 5) of the powers 0 .. of the fraction of each block between nodes (n,) [rad]."""
-    between = nodes[:-1, None] + np.arange(_STEPS) / _STEPS * np.diff(nodes)[:, None]
-    dense = np.append(between.ravel(), nodes[-1])
-    axes = axis_positions(flank, dense, pivot_height, pivot)[::_STEPS]
+    axes = axis_positions(flank, steps_between(nodes), pivot_height, pivot)[::_STEPS]
     slopes, bends = axes_by_roll()(flank.vector, motion_of(flank), nodes, pivot_height, pivot)
-    width = np.diff(nodes)[:, None]
-    given = [axes[:-1], axes[1:], slopes[:-1] * width, slopes[1:] * width]
+    return hermite_powers(axes, slopes, bends, np.diff(nodes), degree)
+
+
+def steps_between(nodes: np.ndarray) -> np.ndarray:
+    """Nodes (n,), and so many rotations between them that what turns is counted on from node to node."""
+    between = nodes[:-1, None] + np.arange(_STEPS) / _STEPS * np.diff(nodes)[:, None]
+    return np.append(between.ravel(), nodes[-1])
+
+
+def hermite_powers(
+    values: np.ndarray, slopes: np.ndarray, bends: np.ndarray, widths: np.ndarray, degree: int
+) -> np.ndarray:
+    """Coefficients (n-1, degree + 1, k) of the blocks of k axes from what they have at nodes (n,), ``widths`` apart."""
+    width = widths[:, None]
+    given = [values[:-1], values[1:], slopes[:-1] * width, slopes[1:] * width]
     if degree == QUINTIC:
         given += [bends[:-1] * width**2, bends[1:] * width**2]
     name = "quintic_block" if degree == QUINTIC else "cubic_block"
-    (found,) = kernel(name)(*(values.ravel() for values in given), 1.0)
-    higher = found.reshape(len(width), _AXES, degree - 1).transpose(0, 2, 1)
-    first = axes[1:] - axes[:-1] - higher.sum(axis=1)
-    return np.concatenate([axes[:-1, None], first[:, None], higher], axis=1)
+    (found,) = kernel(name)(*(each.ravel() for each in given), 1.0)
+    higher = found.reshape(*values[1:].shape, degree - 1).transpose(0, 2, 1)
+    first = values[1:] - values[:-1] - higher.sum(axis=1)
+    return np.concatenate([values[:-1, None], first[:, None], higher], axis=1)
 
 
 def curve_nodes(
@@ -140,9 +154,78 @@ NO_JERK_LIMIT = 1e9
 def pace_in_block(degree: int) -> Kernel:
     """Kernel: the least time per mm of the path at one fraction of a block, and the mm per fraction there (28.4)."""
     kind = "quintic" if degree == QUINTIC else "cubic"
+    powers, fraction, limits = _inputs_of_pace(degree, _AXES, 500.0)
+    feed = Quantity("feed", "wanted speed past the tooth", "mm/s", "v_f", (2e-4, 2000.0))
+    tooth, *pivot = kernel("seen_from_tool").inputs[1:]
+    inputs = (*powers, fraction, tooth, *pivot, *limits, feed)
+    symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in inputs]
+    s, given = symbols[degree + 1], symbols[degree + 2 : degree + 5]
+    axes = horner(symbols[: degree + 1], s)
+    rate = kernel("path_rate").function(ca.jacobian(axes, s), FEED_RADIUS, FEED_RADIUS)
+    paces = [ca.norm_2(ca.jacobian(kernel("seen_from_tool").function(axes, *given), s)) / rate / symbols[-1]]
+    paces += _paces_of_axes(axes, s, rate, symbols[-4:-1])
+    function = ca.Function(
+        f"pace_in_{kind}_block",
+        symbols,
+        ca.cse([ca.mmax(ca.vertcat(*paces)), rate]),
+        [q.name for q in inputs],
+        [_PACE.name, notation.path_rate.name],
+    )
+    return Kernel(
+        function,
+        f"How slow the axes, and the feed past the tooth, make the path of a {kind} block.",
+        inputs,
+        (_PACE, notation.path_rate),
+        "derivatives along the path (28.4) of a block, and of seen_from_tool (5.6)",
+    )
+
+
+@cache
+def pace_in_turning_block(degree: int) -> Kernel:
+    """Kernel: the same of six axes, where A and C turn on; the feed past the tooth is that of the turning.
+
+    The ways of five axes and of C stand at right angles in the length of the path.
+    """
+    powers, fraction, limits = _inputs_of_pace(degree, _AXES + 1, 2e4)
+    inputs = (*powers, fraction, *limits)
+    symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in inputs]
+    s = symbols[degree + 1]
+    axes = horner(symbols[: degree + 1], s)
+    slopes, length = ca.jacobian(axes, s), kernel("path_rate").function
+    cutter = length(ca.vertcat(0, 0, 0, slopes[_AXES], 0), FEED_RADIUS, FEED_RADIUS)
+    rate = ca.norm_2(ca.vertcat(length(slopes[:_AXES], FEED_RADIUS, FEED_RADIUS), cutter))
+    paces = _paces_of_axes(axes, s, rate, symbols[-3:])
+    function = ca.Function(
+        f"pace_in_turning_block_of_degree_{degree}",
+        symbols,
+        ca.cse([ca.mmax(ca.vertcat(*paces)), rate]),
+        [q.name for q in inputs],
+        [_PACE.name, notation.path_rate.name],
+    )
+    return Kernel(
+        function,
+        "How slow six axes make the path of a block.",
+        inputs,
+        (_PACE, notation.path_rate),
+        "derivatives along the path (28.4) of a block",
+    )
+
+
+_PACE = Quantity("pace", "least time per mm of the path", "s/mm", r"1/\hat{v}")
+
+
+def _inputs_of_pace(
+    degree: int, axes: int, farthest: float
+) -> tuple[tuple[Quantity, ...], Quantity, tuple[Quantity, ...]]:
+    """Coefficients of a block, the fraction, and the limits of the axes."""
     powers = tuple(
         Quantity(
-            f"axes_{power}", f"coefficients of power {power} of the fraction", "mixed", "a", (-500.0, 500.0), shape=(5,)
+            f"axes_{power}",
+            f"coefficients of power {power} of the fraction",
+            "mixed",
+            "a",
+            (-farthest, farthest),
+            shape=(axes,),
         )
         for power in range(degree + 1)
     )
@@ -154,39 +237,20 @@ def pace_in_block(degree: int) -> Kernel:
             "mixed",
             rf"\hat{{{letter}}}",
             (1e-3, most),
-            shape=(5,),
+            shape=(axes,),
         )
         for what, letter, most in (("speed", "v", 1e4), ("acceleration", "a", 1e6), ("jerk", "j", NO_JERK_LIMIT))
     )
-    feed = Quantity("feed", "wanted speed past the tooth", "mm/s", "v_f", (2e-4, 2000.0))
-    tooth, *pivot = kernel("seen_from_tool").inputs[1:]
-    inputs = (*powers, fraction, tooth, *pivot, *limits, feed)
-    symbols = [ca.SX.sym(q.name, max(q.size, 1)) for q in inputs]
-    coefficients, s, given = symbols[: degree + 1], symbols[degree + 1], symbols[degree + 2 : degree + 5]
-    axes = coefficients[-1]
-    for coefficient in reversed(coefficients[:-1]):
-        axes = coefficient + s * axes
-    rate = kernel("path_rate").function(ca.jacobian(axes, s), FEED_RADIUS, FEED_RADIUS)
-    paces = [ca.norm_2(ca.jacobian(kernel("seen_from_tool").function(axes, *given), s)) / rate / symbols[-1]]
-    along = axes  # then its derivatives along the path: what n of them allow holds at the power n of the speed
-    for power, limit in enumerate(symbols[-4:-1], start=1):
+    return powers, fraction, limits
+
+
+def _paces_of_axes(axes: ca.SX, s: ca.SX, rate: ca.SX, limits: list[ca.SX]) -> list[ca.SX]:
+    """What speed, acceleration and jerk allow: n derivatives along the path hold at the power n of the speed."""
+    paces, along = [], axes
+    for power, limit in enumerate(limits, start=1):
         along = ca.jacobian(along, s) / rate
         paces.append((ca.mmax(ca.fabs(along) / limit)) ** (1.0 / power))
-    pace = Quantity("pace", "least time per mm of the path", "s/mm", r"1/\hat{v}")
-    function = ca.Function(
-        f"pace_in_{kind}_block",
-        symbols,
-        ca.cse([ca.mmax(ca.vertcat(*paces)), rate]),
-        [q.name for q in inputs],
-        [pace.name, notation.path_rate.name],
-    )
-    return Kernel(
-        function,
-        f"How slow the axes, and the feed past the tooth, make the path of a {kind} block.",
-        inputs,
-        (pace, notation.path_rate),
-        "derivatives along the path (28.4) of a block, and of seen_from_tool (5.6)",
-    )
+    return paces
 
 
 def curve_seconds(powers: np.ndarray, machine: MillingMachine, feed_mm_min: float, tooth: np.ndarray) -> np.ndarray:
@@ -196,13 +260,25 @@ def curve_seconds(powers: np.ndarray, machine: MillingMachine, feed_mm_min: floa
     jerk. How fast the control gets up to it is its own affair. Raises InputError for a feed that is not positive.
     """
     check_feed(feed_mm_min)
+    pose = (tooth, machine.pivot_height, machine.pivot)
+    kind = pace_in_block(powers.shape[1] - 1)
+    return _least_seconds(kind, powers, *pose, *_limits(machine, _AXES), feed_mm_min / 60.0)
+
+
+def turning_seconds(powers: np.ndarray, machine: MillingMachine) -> np.ndarray:
+    """The least duration (n,) [s] of blocks (n, degree + 1, 6) of six axes, each at a constant speed of the path."""
+    return _least_seconds(pace_in_turning_block(powers.shape[1] - 1), powers, *_limits(machine, _AXES + 1))
+
+
+def _limits(machine: MillingMachine, axes: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    limits = machine.limits(axes)
+    return limits.max_speed, limits.max_acceleration, np.minimum(limits.max_jerk, NO_JERK_LIMIT)
+
+
+def _least_seconds(pace_in: Kernel, powers: np.ndarray, *given: np.ndarray | float) -> np.ndarray:
     count, many = len(powers), len(_SAMPLES)
     coefficients = [np.repeat(powers[:, k], many, axis=0) for k in range(powers.shape[1])]
-    pose = (tooth, machine.pivot_height, machine.pivot)
-    limits = (machine.max_speed, machine.max_acceleration, np.minimum(machine.max_jerk, NO_JERK_LIMIT))
-    pace, rate = pace_in_block(powers.shape[1] - 1)(
-        *coefficients, np.tile(_SAMPLES, count), *pose, *limits, feed_mm_min / 60.0
-    )
+    pace, rate = pace_in(*coefficients, np.tile(_SAMPLES, count), *given)
     slowest = pace.reshape(count, many).max(axis=1) * _BETWEEN_SAMPLES
     length = np.trapezoid(rate.reshape(count, many), _SAMPLES, axis=1)
     return np.maximum(length * slowest, SHORTEST)

@@ -25,7 +25,8 @@ from gearmath.machine.planning.blocks import TOLERANCES, check_tolerance, roll_n
 from gearmath.machine.planning.clear_space import Room, room_of
 from gearmath.machine.planning.curves import curve_nodes, curve_seconds, degree_for, powers_of
 from gearmath.machine.planning.feeds import block_seconds, check_feed
-from gearmath.machine.planning.hobbing import hobbing_pass, index_ratio
+from gearmath.machine.planning.hobbed_curves import check_counting, curved_hobbing
+from gearmath.machine.planning.hobbing import hobbing_motion, index_ratio, straight_hobbing
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.planning.rounding import ControlShare, control_share
@@ -179,17 +180,24 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Cut
         )
     if any(member.index_correction):
         raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
-    if job.blocks == "poly":
-        raise InputError(f"{name}: blocks = poly: face hobbing turns the cutter as well, and has straight blocks only")
     (cut,) = Cut.of(member, name)
     _check_motions(member, name, cut)
+    spec, curved = member.flank(cut.flanks[0]), job.blocks == "poly" and member.generation == "generated"
+    if curved:
+        check_counting(name, machine)
     tooth, above = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
-        one = hobbing_pass(member, name, cut, machine, tolerance, job.feed, job.spindle_rpm, above, PLUNGE_FEED, tooth)
+        given = (tolerance, job.feed, job.spindle_rpm, above, PLUNGE_FEED, tooth)
+        motion = hobbing_motion(member, name, cut, machine, *given)
+        one = (
+            curved_hobbing(spec, motion, machine, degree_for(machine, 6))
+            if curved
+            else straight_hobbing(spec, motion, machine)
+        )
         one.axes[:, 2] += lift(member, cut, stock, job.dry_run)
-        label = f"all spaces {stage}, {one.turns:.1f} turns of the work in the roll"
+        label = f"all spaces {stage}, {motion.turns:.1f} turns of the work in the roll"
         axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
-        yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta)
+        yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta, bends=one.bends)
 
 
 def first_pass(

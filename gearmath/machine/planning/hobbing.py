@@ -28,6 +28,8 @@ _MOST_TURN = math.radians(170.0)
 _CHORD_SHARE = 0.1
 #: What six decimals of C may do at the blade. [mm]
 C_ROUNDING = math.radians(0.5e-6) * 250.0
+#: With less, decimals and chords leave nothing for the scallops. [mm]
+_LEAST_TOLERANCE = 1.5e-5
 #: The approach of a blade to its contact is measured this far before and behind it. [rad]
 _BESIDE = 2e-3
 #: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
@@ -42,26 +44,26 @@ _PARABOLA_MARGIN, _FORMATE_TURNS = 1.05, 1.25
 class HobbingPass:
     """Positions X Y Z A B C (n,6) at the block ends, their cradle rotations (n,) and times (n-1,) s.
 
-    ``turns`` is the number of turns of the work in the roll.
+    ``bends`` (n-1,6,k) are a_2 and so on of the blocks where they are polynomials.
     """
 
     axes: np.ndarray
     theta: np.ndarray
     seconds: np.ndarray
-    turns: float
+    bends: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
-class _Drive:
+class Drive:
     """How cutter and work turn: the sense of C, and the turn of the work for one of the cutter."""
 
     sense: int
     index_ratio: float
 
     @staticmethod
-    def of(member: Member, machine: MillingMachine) -> _Drive:
+    def of(member: Member, machine: MillingMachine) -> Drive:
         """M3 turns clockwise as seen along the spindle towards the work: right-handed about the tool axis, as C."""
-        return _Drive(1 if machine.cutter_direction == "M3" else -1, index_ratio(member))
+        return Drive(1 if machine.cutter_direction == "M3" else -1, index_ratio(member))
 
     def seconds_per_turn(self, limits: AxisLimits, rpm: float) -> float:
         """Shortest time [s] of a turn of the work, at a speed of the cutter that A and C can follow."""
@@ -130,7 +132,25 @@ def _distance(
     return found[:, 2]
 
 
-def hobbing_pass(
+@dataclass(frozen=True)
+class HobbingMotion:
+    """One cut: straight down from ``lift`` [mm] above the start, through the roll, to a standstill.
+
+    ``start`` and ``end`` are cradle rotations [rad]; ``down`` and ``turns`` are turns of the work in plunge and roll,
+    each ``per_turn`` [s] long; ``chord`` [mm] is how far blocks may leave the exact path.
+    """
+
+    drive: Drive
+    start: float
+    end: float
+    down: float
+    turns: float
+    per_turn: float
+    lift: float
+    chord: float
+
+
+def hobbing_motion(
     member: Member,
     name: str,
     cut: Cut,
@@ -141,17 +161,17 @@ def hobbing_pass(
     lift: float,
     plunge_feed: float,
     tooth: np.ndarray,
-) -> HobbingPass:
-    """The whole cut: from ``lift`` [mm] above the start of the roll down, through the roll, to a standstill.
+) -> HobbingMotion:
+    """How far and how fast the whole cut goes.
 
     ``feed`` [mm/min] is the highest speed of the roll past ``tooth`` (3,), a place of the work as the indexing has
     turned it when the blade meets it; ``rpm`` is the speed of the cutter; both give way to the axes. Raises InputError
     for a machine without C, and for tolerance, feed or speed out of range.
     """
     _check(name, machine, tolerance, feed, rpm)
-    drive, spec, limits = _Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
+    drive, spec, limits = Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
     pivot, per_turn = (machine.pivot_height, machine.pivot), drive.seconds_per_turn(limits, rpm)
-    start, end, turns = _roll(member, name, cut, drive, tolerance)
+    start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING)
     if end > start:
         way = _way_past(spec, np.linspace(start, end, 200), tooth, pivot)
         turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
@@ -160,17 +180,23 @@ def hobbing_pass(
             f"{name}: feed = {feed} mm/min: asks for {turns:.0f} turns of the work in the roll, {_MOST_TURNS} at most"
         )
     down = lift / min(plunge_feed * per_turn / 60.0, _PLUNGE_PER_TURN)
-    parts = _parts(drive, machine)
+    return HobbingMotion(drive, start, end, down, turns, per_turn, lift, _CHORD_SHARE * tolerance)
+
+
+def straight_hobbing(spec: Flank, motion: HobbingMotion, machine: MillingMachine) -> HobbingPass:
+    """The cut by straight blocks."""
+    drive, start, end, down, turns = motion.drive, motion.start, motion.end, motion.down, motion.turns
+    pivot, limits, parts = (machine.pivot_height, machine.pivot), machine.limits(6), _parts(drive, machine)
     plunge = np.linspace(0.0, 1.0, max(2, math.ceil(down * parts)) + 1)
-    roll = _roll_parts(spec, start, end, max(2, math.ceil(turns * parts)), _CHORD_SHARE * tolerance, pivot)
+    roll = _roll_parts(spec, start, end, max(2, math.ceil(turns * parts)), motion.chord, pivot)
     turned = np.concatenate([down * plunge, down + turns * roll[1:]])
     theta = np.concatenate([np.full(len(plunge), start), start + (end - start) * roll[1:]])
     axes = six_axes(spec, theta, drive.beta(turned), drive.index_ratio, *pivot)
-    axes[: len(plunge), 2] += lift * (1.0 - plunge)
+    axes[: len(plunge), 2] += motion.lift * (1.0 - plunge)
     seconds = paced_seconds(
-        np.diff(axes, axis=0), np.diff(turned) * per_turn, limits.max_speed, limits.max_acceleration
+        np.diff(axes, axis=0), np.diff(turned) * motion.per_turn, limits.max_speed, limits.max_acceleration
     )
-    return HobbingPass(axes, theta, seconds, turns)
+    return HobbingPass(axes, theta, seconds)
 
 
 def _roll_parts(
@@ -190,23 +216,13 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
     for what, value, unit in (("feed", feed, "mm/min"), ("spindle speed", rpm, "rpm")):
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"{name}: {what} = {value} {unit}: must be greater than 0")
-    check_tolerance(tolerance, ROUNDING + C_ROUNDING)
+    check_tolerance(tolerance, ROUNDING + C_ROUNDING, _LEAST_TOLERANCE)
 
 
-def _roll(member: Member, name: str, cut: Cut, drive: _Drive, tolerance: float) -> tuple[float, float, float]:
-    """Cradle rotations of start and end, half a turn's roll beyond what generates the flanks; turns of the work.
-
-    Raises InputError for a tolerance [mm] of which blocks and decimals leave nothing to the scallops.
-    """
+def _roll(member: Member, cut: Cut, drive: Drive, scallop: float) -> tuple[float, float, float]:
+    """Cradle rotations of start and end, half a turn's roll beyond what generates the flanks; turns of the work."""
     if member.generation == "formate":
         return 0.0, 0.0, _FORMATE_TURNS
-    scallop = (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING
-    if scallop <= 0.0:
-        least = (ROUNDING + C_ROUNDING) / (1 - _CHORD_SHARE)
-        raise InputError(
-            f"{name}: tolerance = {tolerance * 1000:g} um: must be more than {least * 1000:.4f} um, or straight blocks "
-            "and printed decimals leave nothing to the scallops of the roll"
-        )
     curvature = max(float(approach_curvature(member, flank, drive.index_ratio).max()) for flank in FLANKS)
     (step,) = kernel("roll_per_turn")(scallop, curvature * _PARABOLA_MARGIN)
     low, high = roll_range(member, cut)
@@ -220,7 +236,7 @@ def _way_past(spec: Flank, theta: np.ndarray, tooth: np.ndarray, pivot: tuple[fl
     return float(np.linalg.norm(np.diff(seen, axis=0), axis=1).sum())
 
 
-def _parts(drive: _Drive, machine: MillingMachine) -> float:
+def _parts(drive: Drive, machine: MillingMachine) -> float:
     """Blocks in a turn of the work: so many that a modulo axis goes less than half a turn in one of them."""
     turns = []
     if machine.axes.A.modulo:
@@ -231,10 +247,14 @@ def _parts(drive: _Drive, machine: MillingMachine) -> float:
 
 
 def _chord(spec: Flank, theta: np.ndarray, pivot: tuple[float, np.ndarray]) -> float:
-    """How far [mm] straight blocks leave the exact path at most: positions, and angles at the reach of the cutter."""
+    """How far [mm] straight blocks leave the exact path at most."""
     middle = (theta[1:] + theta[:-1]) / 2
     every = np.sort(np.concatenate([theta, middle]))
     path = six_axes(spec, every, np.zeros(len(every)), 0.0, *pivot)
-    off = np.abs(path[1:-1:2] - (path[:-2:2] + path[2::2]) / 2)
-    reach = np.linalg.norm(spec.vector[[0, 10]])
+    return off_the_roll(spec, path[1:-1:2] - (path[:-2:2] + path[2::2]) / 2)
+
+
+def off_the_roll(spec: Flank, apart: np.ndarray) -> float:
+    """What differences (n,6) of positions are at most [mm]: positions, and angles at the reach of the cutter."""
+    off, reach = np.abs(apart), np.linalg.norm(spec.vector[[0, 10]])
     return float((np.linalg.norm(off[:, :3], axis=1) + reach * off[:, 3:].sum(axis=1)).max())

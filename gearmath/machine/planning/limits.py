@@ -56,11 +56,13 @@ def _check_shape(name: str, one: Pass, machine: MillingMachine) -> None:
     if one.axes.ndim != 2 or one.axes.shape[1] not in (5, 6) or n < 2 or one.seconds.shape != (n - 1,):
         shapes = f"positions {one.axes.shape} and times {one.seconds.shape}"
         raise InputError(f"{where}: has {shapes}, needed are (n, 5) or (n, 6) and (n-1,) with n at least 2")
-    if one.bends is not None and (one.bends.shape[:2] != (n - 1, 5) or one.bends.shape[2] not in (2, 4)):
-        raise InputError(f"{where}: has coefficients {one.bends.shape}, needed are (n-1, 5, 2) or (n-1, 5, 4)")
-    if one.bends is not None and 5 * (one.bends.shape[2] + 1) > machine.control.polynomial_values:
+    columns = one.axes.shape[1]
+    if one.bends is not None and (one.bends.shape[:2] != (n - 1, columns) or one.bends.shape[2] not in (2, 4)):
+        needed = f"(n-1, {columns}, 2) or (n-1, {columns}, 4)"
+        raise InputError(f"{where}: has coefficients {one.bends.shape}, needed are {needed}")
+    if one.bends is not None and one.values_of_a_block > machine.control.polynomial_values:
         raise InputError(
-            f"{where}: its blocks have {5 * (one.bends.shape[2] + 1)} end points and coefficients: {machine.name} "
+            f"{where}: its blocks have {one.values_of_a_block} end points and coefficients: {machine.name} "
             f"takes control.polynomial_values = {machine.control.polynomial_values}"
         )
     if one.axes.shape[1] == 6 and machine.axes.C is None:

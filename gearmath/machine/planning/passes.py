@@ -28,7 +28,12 @@ class Pass:
     theta: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Cradle rotation at each position, (n,) rad; where it stands still the cutter plunges. Empty where not known."""
     bends: np.ndarray | None = None
-    """Where blocks are polynomials: a_2, a_3 .. of X Y Z A B in each, by a parameter from 0 to 1, (n-1, 5, k)."""
+    """Where blocks are polynomials: a_2, a_3 .. of each axis, by a parameter from 0 to 1, (n-1, 5 or 6, k)."""
+
+    @property
+    def values_of_a_block(self) -> int:
+        """End points, and coefficients where blocks are polynomials, that one block has."""
+        return self.axes.shape[1] * (1 if self.bends is None else self.bends.shape[2] + 1)
 
     def in_straight_parts(self) -> Pass:
         """The same with every polynomial as many straight blocks; itself where it has none.
@@ -41,7 +46,8 @@ class Pass:
         higher = u[:, None] ** np.arange(2, 2 + self.bends.shape[2])
         ends = np.diff(self.axes, axis=0) - self.bends.sum(axis=2)
         where = self.axes[:-1, None] + u[:, None] * ends[:, None] + np.einsum("uk,nak->nua", higher, self.bends)
-        steps = np.linalg.norm(np.diff(where, axis=1) * np.array([1.0, 1.0, 1.0, *[180.0 / math.pi] * 2]), axis=2)
+        weights = np.where(np.arange(where.shape[2]) < 3, 1.0, 180.0 / math.pi)
+        steps = np.linalg.norm(np.diff(where, axis=1) * weights, axis=2)
         seconds = steps / steps.sum(axis=1, keepdims=True) * self.seconds[:, None]
         theta = self.theta[:-1, None] + u[1:] * np.diff(self.theta)[:, None]
         return replace(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 
+import numpy as np
+
 from gearmath.machine.planning.blocks import ROUNDING
 from gearmath.machine.planning.cut_plan import DRY_LIFT, ONE_SPACE, PLUNGE_FEED, CuttingJob, CuttingPlan, cutting_plan
 from gearmath.machine.planning.hobbing import C_ROUNDING
@@ -104,7 +106,7 @@ def _polynomial_notes(plan: CuttingPlan) -> tuple[str, ...]:
     """What the header says of polynomial blocks."""
     if (bends := plan.passes[0].bends) is None:
         return ()
-    degree, most = bends.shape[2] + 1, max(len(one.seconds) for one in plan.passes)
+    degree, most = bends.shape[2] + 1, max(int(np.diff(one.theta).astype(bool).sum()) for one in plan.passes)
     counting = "; PO of A counts on through 360 [unconfirmed]" if plan.machine.axes.A.modulo else ""
     return (
         f"blocks: POLY of degree {degree}, up to {most} in a roll; without the word POLY the control drives straight",

@@ -5,8 +5,9 @@ cutter's spindle stands still at SPOS=0 first, and then runs as axis C. That C m
 sense is that of M3, depends on the machine [unconfirmed].
 
 Where a pass has coefficients its blocks are polynomials: POLY with PO[X]=(..), or X=PO(..) of the fifth degree. All
-five axes are in FGROUP, so that all of them are functions of one parameter. That G93 may stand with POLY, and that PO
-of a modulo A counts on through 360, no page of a manual at hand confirms [unconfirmed].
+axes that move are in FGROUP, so that all of them are functions of one parameter. That G93 may stand with POLY, and that
+PO of a modulo A counts on through 360, no page of a manual at hand confirms [unconfirmed]; in face hobbing A and C,
+which turn on, are counting axes.
 
 The reader of these programs is ``gearmath.machine.control.reader``; it shares no code with this module, so that each
 checks the other.
@@ -27,14 +28,15 @@ from gearmath.machine.writing import start
 from gearmath.machine.writing.chosen import FIRST, LAST, asked, if_chosen
 from gearmath.machine.writing.words import (
     MAX_BLOCK_CHARACTERS,
-    MAX_QUINTIC_CHARACTERS,
+    MAX_LONG_CHARACTERS,
+    MOST_SHORT_VALUES,
     Positions,
     check_name,
     comment,
     feed_number,
     numbered,
 )
-from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.milling_machine import AXES, CUTTER_AXIS, MillingMachine
 
 __all__ = ["Pass", "write_program"]
 
@@ -75,9 +77,9 @@ def write_program(
 
 def _check_lengths(name: str, text: str, passes: Sequence[Pass]) -> None:
     """Raises InputError for a block of polynomials that the control would not read to its end."""
-    if (bends := passes[0].bends) is None:
+    if passes[0].bends is None:
         return
-    most = MAX_BLOCK_CHARACTERS if bends.shape[2] == 2 else MAX_QUINTIC_CHARACTERS
+    most = MAX_BLOCK_CHARACTERS if passes[0].values_of_a_block <= MOST_SHORT_VALUES else MAX_LONG_CHARACTERS
     for number, line in enumerate(text.splitlines(), start=1):
         if len(line) + 1 > most:
             raise InputError(f"{name}: line {number} has {len(line) + 1} characters, {most} are allowed")
@@ -103,7 +105,7 @@ class _Job:
 def _body(job: _Job, passes: Sequence[Pass], room: Room, tool_radius: float, coolant: bool) -> Iterator[str]:
     """Blocks without their numbers, and comments."""
     machine = job.machine
-    yield from start.head(machine, polynomials=passes[0].bends is not None)
+    yield from start.head(machine, "" if passes[0].bends is None else (AXES + CUTTER_AXIS)[: passes[0].axes.shape[1]])
     yield from start.checks(machine)
     yield from start.enough_height(machine, room, machine.tool_length, tool_radius)
     yield from asked(len(passes), "section")
@@ -160,9 +162,8 @@ def _section(job: _Job, one: Pass, number: int, count: int) -> Iterator[str]:
 
 def pass_words(one: Pass, positions: Positions) -> list[tuple[str, ...]]:
     """The words of the positions of a pass: its first, and the ends of its blocks."""
-    if one.bends is not None:
-        return [*positions.words(one.axes[:1]), *positions.polynomial_words(one.axes, one.bends)]
-    points = positions.words(one.axes[:, :5])
-    if one.axes.shape[1] == 5:
-        return points
-    return [(*words, word) for words, word in zip(points, positions.cutter_words(one.axes[:, 5]), strict=True)]
+    ends = one.axes if one.bends is None else one.axes[:1]
+    points = positions.words(ends[:, :5])
+    if one.axes.shape[1] == 6:
+        points = [(*words, word) for words, word in zip(points, positions.cutter_words(ends[:, 5]), strict=True)]
+    return points if one.bends is None else [*points, *positions.polynomial_words(one.axes, one.bends)]

@@ -43,19 +43,20 @@ def modal(machine: MillingMachine) -> str:
     return " ".join((f"G17 G40 G90 G94 G710 {machine.work_offset}", *machine.control.words))
 
 
-def head(machine: MillingMachine, polynomials: bool = False) -> Iterator[str]:
+def head(machine: MillingMachine, curved: str = "") -> Iterator[str]:
     """Every modal state that acts on the path, none inherited: transformation, compressor and frames off.
 
-    The path of polynomials is that of all five axes: what FGROUP leaves out follows it as UPATH or SPATH say.
+    The path of polynomials is that of all axes that are ``curved``: what FGROUP leaves out follows it as UPATH or SPATH
+    say.
     """
     yield modal(machine)
     yield "TRAFOOF"
     yield "COMPOF"
     yield "DIAMOF"
     yield "TRANS"
-    if polynomials:
-        yield f"FGROUP({','.join(AXES)})"
-        yield f"FGREF[A]={ONE_MM_A_DEGREE} FGREF[B]={ONE_MM_A_DEGREE}"
+    if curved:
+        yield f"FGROUP({','.join(curved)})"
+        yield " ".join(f"FGREF[{axis}]={ONE_MM_A_DEGREE}" for axis in curved[3:])
     else:
         yield "FGROUP(X,Y,Z)"
     yield "OVR=100 OVRRAP=100"

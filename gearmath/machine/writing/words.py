@@ -17,8 +17,8 @@ from gearmath.specs.milling_machine import AXES, CUTTER_AXIS, UNITS_PER_INTERNAL
 
 #: A block may be no longer than this, comment and line end included.
 MAX_BLOCK_CHARACTERS = 250
-#: Where a block has 25 values and more, the control is one that reads blocks up to this length.
-MAX_QUINTIC_CHARACTERS = 512
+#: A control that takes more values in a block than a cubic of five axes has reads blocks up to this length.
+MAX_LONG_CHARACTERS, MOST_SHORT_VALUES = 512, 15
 MAX_NAME_CHARACTERS = 24
 #: Decimals that coefficients have beyond those of positions: rounding them is nothing beside rounding the end points.
 _MORE_DIGITS = 2
@@ -86,19 +86,20 @@ class Positions:
         ]
 
     def polynomial_words(self, axes: np.ndarray, bends: np.ndarray) -> list[tuple[str, ...]]:
-        """The words PO of blocks between positions (n, 5) with coefficients ``bends`` (n-1, 5, k), in mm and rad.
+        """The words PO of blocks between positions (n, k) with coefficients ``bends`` (n-1, k, m), in mm and rad.
 
-        A modulo A counts on from what its DC word says at the first position [unconfirmed].
+        A modulo A counts on from what its DC word says at the first position [unconfirmed]. With C there are six axes.
         """
-        values = axes * UNITS_PER_INTERNAL
+        scale = np.append(UNITS_PER_INTERNAL, UNITS_PER_INTERNAL[-1])[: axes.shape[1]]
+        values = axes * scale
         values[:, 2] -= self.length
-        values[:, 3] -= 360.0 * round((values[0, 3] - self.printed(axes[:1])[0, 3]) / 360.0)
-        given = bends * UNITS_PER_INTERNAL[:, None]
-        places = [self.mm] * 3 + [self.degrees] * 2
+        values[:, 3] -= 360.0 * round((values[0, 3] - self.printed(axes[:1, :5])[0, 3]) / 360.0)
+        given = bends * scale[:, None]
+        places = [self.mm] * 3 + [self.degrees] * 3
         return [
             tuple(
                 self._polynomial(axis, end, own, digits)
-                for axis, end, own, digits in zip(AXES, ends, block, places, strict=True)
+                for axis, end, own, digits in zip(AXES + CUTTER_AXIS, ends, block, places, strict=False)
             )
             for ends, block in zip(values[1:].tolist(), given.tolist(), strict=True)
         ]

@@ -94,6 +94,29 @@ def test_face_hobbed_members_are_written_alike_for_both_controls(
         assert post(gm_post, text, tmp_path) == (control.cutting(plan, "CUT"), "")
 
 
+def counting(machine: MillingMachine, values: int) -> MillingMachine:
+    """The machine with A and C as axes that count on, and polynomial blocks of so many values."""
+    axes = {
+        axis: getattr(machine.axes, axis).model_copy(update={"modulo": False, "travel": (-720.0, 1e6)}) for axis in "AC"
+    }
+    control = machine.control.model_copy(update={"polynomial_values": values})
+    return machine.model_copy(update={"axes": machine.axes.model_copy(update=axes), "control": control})
+
+
+@pytest.mark.parametrize("values", [18, 30])
+def test_polynomials_of_hobbed_members_are_written_alike(
+    values: int, vertical: MillingMachine, gm_post: Path, tmp_path: Path
+) -> None:
+    """Cubic and quintic blocks of six axes, A and C counting through all turns, in two stages, Z of the tip."""
+    machine = counting(vertical, values).model_copy(update={"z_reference": "tip"})
+    gear_set = load_pair(bundled("crown_gear_hobbed_14x39.toml"))
+    for member in gear_set.members:
+        plan = planned(gear_set, member, machine, blocks="poly", tolerance=5e-4, roughing_stock=0.3)
+        text = post_file(plan)
+        assert f"\ndegree {values // 6}\nto " in text
+        assert post(gm_post, text, tmp_path) == (program_of(plan, "CUT"), "")
+
+
 @pytest.mark.parametrize(("name", "values"), [*((name, 15) for name in SETS), (SETS[0], 25)])
 def test_polynomial_programs_are_written_alike(
     name: str, values: int, vertical: MillingMachine, gm_post: Path, tmp_path: Path
@@ -242,6 +265,8 @@ def small(gear_set: BevelSet, vertical: MillingMachine) -> str:
             "to: stands in a roll that is computed",
         ),
         (r"^settings (.*)", r"to 1 2 3 4 5", "to: has 5 numbers, must have 7"),
+        (r"^settings (.*)", r"degree 3\nto 1 2 3 4 5 6 0", "to: has 7 numbers, must have 19"),
+        (r"^settings (.*)", r"to 1 2 3 4 5 6 0\ndegree 3", "degree: stands in a roll that was planned"),
         (r"^settings (.*)", r"to 1 2 3 4 1e6 6 0", r"to: number 5 = 1e\+06: must be -1e5 to 1e5"),
         (r"^settings (.*)", r"to 1 2 3 4 5 6 0\nto 1 2 3 4 5 6 0", r"to: time = 0 s: must be 0.0001 to 100000"),
         (r"^tooth (.*)", r"tooth \1\ndegree 2", "degree = 2: must be 1, 3 or 5"),
@@ -312,16 +337,19 @@ def fuzz(gm_post: Path, gcc: str) -> Path:
         ("nasa_tp3096_12x36", {"tolerance": 5e-2}),
         ("nasa_tp3096_12x36", {"tolerance": 5e-2, "blocks": "poly"}),
         ("crown_gear_hobbed_14x39", {"tolerance": 5e-2}),
+        ("crown_gear_hobbed_14x39", {"tolerance": 5e-2, "blocks": "poly"}),
     ],
-    ids=["straight", "polynomial", "hobbed"],
+    ids=["straight", "polynomial", "hobbed", "hobbed polynomial"],
 )
 def test_fuzzed_settings_files_never_crash_and_say_one_sentence(
     name: str, job: dict, vertical: MillingMachine, fuzz: Path, tmp_path: Path
 ) -> None:
     """Under ASan and UBSan, mutations of a short file: FUZZED of each kind."""
     gear_set = load_pair(bundled(f"{name}.toml"))
-    spaces = {"spaces": (0,)} if gear_set.pinion.process == "face_milling" else {}
-    lines = post_file(planned(gear_set, "pinion", vertical, **job, **spaces)).splitlines(keepends=True)
+    hobbed = gear_set.pinion.process == "face_hobbing"
+    machine = counting(vertical, 18) if hobbed else vertical
+    spaces = {} if hobbed else {"spaces": (0,)}
+    lines = post_file(planned(gear_set, "pinion", machine, **job, **spaces)).splitlines(keepends=True)
     ends = [k for k, line in enumerate(lines) if line.startswith("to ")]  # of a long roll its beginning
     lines = [line for k, line in enumerate(lines) if k not in ends[12:]]
     starts = [k for k, line in enumerate(lines) if line.startswith("pass ")]

@@ -177,7 +177,7 @@ static double whole_turns(const Job *job, const Roll *roll, const Pass *pass, do
   const double turn = 2 * pi, low = job->travel[3][0], high = job->travel[3][1];
   double first = roll->axes[3] + pass->angle, least = first, most = first, fewest, greatest;
   int64_t k;
-  if (!isfinite(low)) return 0.0;
+  if (!isfinite(low) || roll->planned) return 0.0; /* a planned one stands there as it is turned */
   for (k = 1; k < roll->nodes; ++k) {
     least = fmin(least, roll->axes[AXES * k + 3] + pass->angle);
     most = fmax(most, roll->axes[AXES * k + 3] + pass->angle);

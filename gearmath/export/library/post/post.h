@@ -14,7 +14,7 @@ enum { AXES = 5, SETTINGS = 12, MOTION = 70, MOST_BENDS = 4 };
 
 /*
  * A path of the cutter through tooth space 0: what the settings file says of it, and what comes of that. A planned one,
- * of a hobbed member, stands there as it was planned: positions, the cutter's axis C with them, and times.
+ * of a hobbed member, stands there as it was planned: positions, the cutter's axis C with them, coefficients and times.
  */
 typedef struct {
   double settings[SETTINGS], motion[MOTION], tooth[3], plunge;
@@ -25,7 +25,7 @@ typedef struct {
   int64_t nodes, room;
   double *axes;    /* X Y Z A B of each node, A counting on */
   double *seconds; /* of the block that ends at each node but the first */
-  double *bends;   /* AXES * powers of each block */
+  double *bends;   /* powers of each axis in each block, of a planned one those of C too */
   double *cutter;  /* C of each node of a planned one */
 } Roll;
 

@@ -125,12 +125,14 @@ static void travel(Job *job, int64_t line, const char *text)
   memcpy(job->travel[axis - names], ends, sizeof ends);
 }
 
-/* The end of a block of a planned roll: X Y Z A B C, and seconds. */
+/* The end of a block of a planned roll: X Y Z A B C, seconds, and the coefficients of each axis. */
 static void add_planned(const Job *job, int64_t line, Roll *roll, const char *text, int seen)
 {
-  double values[AXES + 2];
+  enum { PLAIN = AXES + 2 };
+  double values[PLAIN + MOST_BENDS * (AXES + 1)];
+  const int bends = roll->powers * (AXES + 1);
   int k;
-  if (seen || roll->motion_rows || (roll->nodes && !roll->planned))
+  if ((seen & ROLL_NEEDS) || roll->motion_rows || (roll->nodes && !roll->planned))
     refuse(job, line, "to: stands in a roll that is computed from its settings");
   roll->planned = 1;
   if (roll->nodes == MOST_NODES) refuse(job, line, "to: more than %d in one roll", MOST_NODES);
@@ -139,15 +141,18 @@ static void add_planned(const Job *job, int64_t line, Roll *roll, const char *te
     roll->axes = grown(roll->axes, AXES * roll->room, sizeof *roll->axes);
     roll->seconds = grown(roll->seconds, roll->room, sizeof *roll->seconds);
     roll->cutter = grown(roll->cutter, roll->room, sizeof *roll->cutter);
+    if (bends) roll->bends = grown(roll->bends, bends * roll->room, sizeof *roll->bends);
   }
-  numbers(job, line, "to", text, values, AXES + 2);
-  for (k = 0; k <= AXES; ++k)
-    if (!(fabs(values[k]) <= 1e5)) refuse(job, line, "to: number %d = %g: must be -1e5 to 1e5", k + 1, values[k]);
+  numbers(job, line, "to", text, values, PLAIN + bends);
+  for (k = 0; k < PLAIN + bends; ++k)
+    if (k != PLAIN - 1 && !(fabs(values[k]) <= 1e5)) refuse(job, line, "to: number %d = %g: must be -1e5 to 1e5", k + 1, values[k]);
   if (roll->nodes && !(values[AXES + 1] >= SHORTEST && values[AXES + 1] <= LONGEST))
     refuse(job, line, "to: time = %g s: must be %g to %g", values[AXES + 1], SHORTEST, LONGEST);
   memcpy(roll->axes + AXES * roll->nodes, values, AXES * sizeof *values);
   roll->cutter[roll->nodes] = values[AXES];
   if (roll->nodes) roll->seconds[roll->nodes - 1] = values[AXES + 1];
+  if (roll->nodes && bends)
+    memcpy(roll->bends + (int64_t)bends * (roll->nodes - 1), values + PLAIN, (size_t)bends * sizeof *values);
   ++roll->nodes;
 }
 

@@ -83,9 +83,9 @@ static void print_polynomial(const Job *job, const Pass *pass, int64_t node, int
 {
   const Roll *roll = job->rolls + pass->roll;
   const int decimals = job->decimals[j > 2], powers = roll->powers;
-  const double *bends = roll->bends + AXES * powers * (node - 1) + powers * j;
+  const double *bends = roll->bends + (AXES + (roll->planned != 0)) * powers * (node - 1) + powers * j;
   int64_t rounded[MOST_BENDS];
-  double value = roll->axes[AXES * node + j];
+  double value = j < AXES ? roll->axes[AXES * node + j] : roll->cutter[node];
   int k, kept = 0;
   if (j == 2) value = value + pass->lift - job->length;
   if (j == 3) value = value + pass->angle + pass->turns;
@@ -124,8 +124,8 @@ static const char *fill(const Job *job, const Line *line, const Pass *pass, int6
     print_scaled(stream, turned(job->rolls[pass->roll].cutter[node] * degrees, job->cutter_modulo,
         power_of_ten(job->decimals[1])), job->decimals[1]);
   else if (length == 2 && pass && node > 0 && *text == 'P' && job->rolls[pass->roll].powers
-      && (axis = strchr(axes, text[1])) != NULL)
-    print_polynomial(job, pass, node, (int)(axis - axes), stream);
+      && (axis = strchr(job->rolls[pass->roll].planned ? "XYZABC" : axes, text[1])) != NULL)
+    print_polynomial(job, pass, node, *axis == 'C' ? AXES : (int)(strchr(axes, *axis) - axes), stream);
   else if (length == 1 && pass && node > 0 && *text == 'F')
     print_feed(stream, 60.0 / job->rolls[pass->roll].seconds[node - 1]);
   else
