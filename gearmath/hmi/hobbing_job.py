@@ -73,7 +73,7 @@ def planned(machine: HobbingMachine, wish: HobbingWish) -> Job:
     if wish.hob is not None:
         given["hob"] = wish.hob
     if wish.helix:
-        given["helix"] = Helix(wish.helix, wish.hand, wish.cut, _feed(wish.feed))
+        given |= {"helix": wish.helix, "hand": wish.hand, "cut": wish.cut, "feed": _feed(wish.feed)}
     return plan(machine, teeth=wish.teeth, shift=wish.shift, **given)
 
 

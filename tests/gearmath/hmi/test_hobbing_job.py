@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import re
 import tomllib
 import zipfile
@@ -14,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.errors import InputError
+from gearmath.gearbox.train import GearboxPlan
 from gearmath.hmi import hobbing_job
 from gearmath.hmi.blocks import words_of_charts
 from gearmath.hmi.drawing import drawn, translated
@@ -55,6 +57,18 @@ def test_what_the_machine_cannot_do_is_refused_with_the_limit() -> None:
         planned(machine, HobbingWish(teeth=40, hob=machine.hobs[0].name, helix=10.0, feed="x"))
     with pytest.raises(InputError, match="pitch"):
         planned(load_hobbing_machine(bundled("lathe_example.toml")), HobbingWish(pitch="fine"))
+
+
+def test_a_helical_gear_has_the_lead_of_its_helix_at_the_pitch_circle() -> None:
+    """pi m z / sin(beta), ISO 21771: the lead is one turn along the pitch cylinder of diameter m z / cos(beta)."""
+    machine = load_hobbing_machine(bundled("hobbing_helical.toml"))
+    hob = machine.hobs[0].name
+    for hand in ("right", "left"):
+        job = planned(machine, HobbingWish(teeth=17, hob=hob, helix=20.0, hand=hand, cut="conventional"))
+        assert isinstance(job.plan, GearboxPlan)
+        assert job.plan.helix is not None
+        assert (job.plan.helix.hand, job.plan.helix.cut) == (hand, "conventional")
+        assert job.plan.helix.lead == pytest.approx(math.pi * 17 / math.sin(math.radians(20)), rel=1e-9)  # module 1
 
 
 def test_a_thread_is_planned_on_a_lathe() -> None:
