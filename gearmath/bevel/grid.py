@@ -100,13 +100,24 @@ def feet(file: FlankFile) -> np.ndarray:
 
 def blank_fractions(member: Member, axial: np.ndarray, radial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Parts (n,) of the face width from the toe and of the working depth at places (n,) [mm]: the inverse of (8.3)."""
+    across, height, depth = _over_limit(member, axial, radial)
+    return across, height / depth
+
+
+def over_reach(member: Member, axial: np.ndarray, radial: np.ndarray) -> np.ndarray:
+    """Heights (n,) [mm] of places over the lower limit of the flank, to which the tip of the mate reaches (8.3)."""
+    return _over_limit(member, axial, radial)[1]
+
+
+def _over_limit(member: Member, axial: np.ndarray, radial: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Parts (n,) of the face width, heights over the lower limit and working depths (n,) [mm] there."""
     blank, ends = member.blank, []
     along, down = _on_cone(member, axial, radial)
     across = (along - blank.mean_cone_distance) / blank.face_width + 0.5
     for up in (0.0, 1.0):
         place = kernel("flank_place")(blank.vector, across, np.full(len(across), up))
         ends.append(_on_cone(member, *place)[1])
-    return across, (down - ends[0]) / (ends[1] - ends[0])
+    return across, ends[0] - down, ends[0] - ends[1]
 
 
 def _on_cone(member: Member, axial: np.ndarray, radial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

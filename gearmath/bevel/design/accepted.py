@@ -41,15 +41,16 @@ def accepted(data: DesignData, name: str = "design data", given: BevelSet | None
     Raises InputError and ComputationError as :func:`design` and :func:`verdict` do, those of the first trial.
     """
     try:
-        return _clear_of_undercut(_judged(Changed(data), name, given), data, name, given)
+        first = _judged(Changed(data), name, given)
     except (InputError, ComputationError) as error:
-        first = error
-    for changed in _on_edges(data) if isinstance(first, EdgeContact) else _not_cut(data, given):
-        try:
-            return _judged(changed, name, given)
-        except (InputError, ComputationError):
-            continue
-    raise first
+        changes = _on_edges(data) if isinstance(error, EdgeContact) else _not_cut(data, given)
+        if (found := next(_that_run(changes, name, given), None)) is None:
+            raise
+        return found
+    if not _is_undercut(first):
+        return first
+    others = _that_run(_not_cut(data, given), name, given)
+    return next((found for found in others if not _is_undercut(found)), first)
 
 
 def _judged(changed: Changed, name: str, given: BevelSet | None) -> _Judged:
@@ -58,17 +59,17 @@ def _judged(changed: Changed, name: str, given: BevelSet | None) -> _Judged:
     return made, {"changed": changed.values, **figures}, runs
 
 
-def _clear_of_undercut(found: _Judged, data: DesignData, name: str, given: BevelSet | None) -> _Judged:
-    """A pair that runs, or, where its flanks are undercut, the first one that is not, with what may help it."""
-    if any(found[1]["undercut_mm"].values()):
-        for changed in _not_cut(data, given):
-            try:
-                other = _judged(changed, name, given)
-            except (InputError, ComputationError):
-                continue
-            if not any(other[1]["undercut_mm"].values()):
-                return other
-    return found
+def _that_run(changes: Iterator[Changed], name: str, given: BevelSet | None) -> Iterator[_Judged]:
+    """The pairs of changed data that can be made and run."""
+    for changed in changes:
+        try:
+            yield _judged(changed, name, given)
+        except (InputError, ComputationError):
+            continue
+
+
+def _is_undercut(found: _Judged) -> bool:
+    return any(found[1]["undercut_mm"].values())
 
 
 def _on_edges(data: DesignData) -> Iterator[Changed]:

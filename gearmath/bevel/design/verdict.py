@@ -16,6 +16,7 @@ from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
+from gearmath.bevel.grid import over_reach
 from gearmath.bevel.pair import check_pair
 from gearmath.bevel.ridge import ridge
 from gearmath.bevel.tooth import mean_backlash, space_widths, tooth_space
@@ -136,12 +137,10 @@ def undercut(member: Member, name: str) -> float:
 
     Contact ends at the fold, but what the blade cuts beyond it takes metal from the flank above it, too.
     """
-    space, blank = tooth_space(member, name), member.blank
+    space = tooth_space(member, name)
     points = np.concatenate([surface.point[surface.undercut] for surface in (space.concave, space.convex)])
-    along, deep = kernel("root_place")(points, blank.delta)
-    taper = blank.delta - blank.delta_f
-    reach = blank.mean_dedendum - blank.clearance + (along - blank.mean_cone_distance) * math.tan(taper)
-    return float(np.max(reach - deep, initial=0.0))
+    heights = over_reach(member, points[:, 2], np.hypot(points[:, 0], points[:, 1]))
+    return float(np.max(heights, initial=0.0))
 
 
 def _check_tips(member: Member, name: str, height: float) -> None:

@@ -32,7 +32,7 @@ _AXES = 5
 #: No block rolls further. [rad]
 _LONGEST = math.radians(40.0)
 #: Positions between the ends of a block, so that A is counted on over less than half a turn.
-_STEPS = 8
+STEPS = 8
 #: Where a block is asked for speed, acceleration and jerk.
 _SAMPLES = np.linspace(0.0, 1.0, 65)
 #: What lies between may be more by this part.
@@ -110,14 +110,14 @@ class QuinticPass(CurvedPass):
 
 def powers_of(flank: Flank, nodes: np.ndarray, pivot_height: float, pivot: np.ndarray, degree: int) -> np.ndarray:
     """Coefficients (n-1, degree + 1, 5) of the powers 0 .. of the fraction of each block between nodes (n,) [rad]."""
-    axes = axis_positions(flank, steps_between(nodes), pivot_height, pivot)[::_STEPS]
+    axes = axis_positions(flank, steps_between(nodes), pivot_height, pivot)[::STEPS]
     slopes, bends = axes_by_roll()(flank.vector, motion_of(flank), nodes, pivot_height, pivot)
     return hermite_powers(axes, slopes, bends, np.diff(nodes), degree)
 
 
 def steps_between(nodes: np.ndarray) -> np.ndarray:
     """Nodes (n,), and so many rotations between them that what turns is counted on from node to node."""
-    between = nodes[:-1, None] + np.arange(_STEPS) / _STEPS * np.diff(nodes)[:, None]
+    between = nodes[:-1, None] + np.arange(STEPS) / STEPS * np.diff(nodes)[:, None]
     return np.append(between.ravel(), nodes[-1])
 
 
@@ -164,20 +164,12 @@ def pace_in_block(degree: int) -> Kernel:
     rate = kernel("path_rate").function(ca.jacobian(axes, s), FEED_RADIUS, FEED_RADIUS)
     paces = [ca.norm_2(ca.jacobian(kernel("seen_from_tool").function(axes, *given), s)) / rate / symbols[-1]]
     paces += _paces_of_axes(axes, s, rate, symbols[-4:-1])
-    function = ca.Function(
+    name, what = (
         f"pace_in_{kind}_block",
-        symbols,
-        ca.cse([ca.mmax(ca.vertcat(*paces)), rate]),
-        [q.name for q in inputs],
-        [_PACE.name, notation.path_rate.name],
-    )
-    return Kernel(
-        function,
         f"How slow the axes, and the feed past the tooth, make the path of a {kind} block.",
-        inputs,
-        (_PACE, notation.path_rate),
-        "derivatives along the path (28.4) of a block, and of seen_from_tool (5.6)",
     )
+    source = "derivatives along the path (28.4) of a block, and of seen_from_tool (5.6)"
+    return _kernel_of_pace(name, what, inputs, symbols, paces, rate, source)
 
 
 @cache
@@ -195,23 +187,27 @@ def pace_in_turning_block(degree: int) -> Kernel:
     cutter = length(ca.vertcat(0, 0, 0, slopes[_AXES], 0), FEED_RADIUS, FEED_RADIUS)
     rate = ca.norm_2(ca.vertcat(length(slopes[:_AXES], FEED_RADIUS, FEED_RADIUS), cutter))
     paces = _paces_of_axes(axes, s, rate, symbols[-3:])
-    function = ca.Function(
-        f"pace_in_turning_block_of_degree_{degree}",
-        symbols,
-        ca.cse([ca.mmax(ca.vertcat(*paces)), rate]),
-        [q.name for q in inputs],
-        [_PACE.name, notation.path_rate.name],
-    )
-    return Kernel(
-        function,
-        "How slow six axes make the path of a block.",
-        inputs,
-        (_PACE, notation.path_rate),
-        "derivatives along the path (28.4) of a block",
-    )
+    name, what = f"pace_in_turning_block_of_degree_{degree}", "How slow six axes make the path of a block."
+    return _kernel_of_pace(name, what, inputs, symbols, paces, rate, "derivatives along the path (28.4) of a block")
 
 
 _PACE = Quantity("pace", "least time per mm of the path", "s/mm", r"1/\hat{v}")
+
+
+def _kernel_of_pace(
+    name: str,
+    what: str,
+    inputs: tuple[Quantity, ...],
+    symbols: list[ca.SX],
+    paces: list[ca.SX],
+    rate: ca.SX,
+    source: str,
+) -> Kernel:
+    """The kernel of the slowest of all ``paces``, and of the path per fraction."""
+    outputs = (_PACE, notation.path_rate)
+    values = ca.cse([ca.mmax(ca.vertcat(*paces)), rate])
+    function = ca.Function(name, symbols, values, [q.name for q in inputs], [q.name for q in outputs])
+    return Kernel(function, what, inputs, outputs, source)
 
 
 def _inputs_of_pace(

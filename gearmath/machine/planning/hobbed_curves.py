@@ -17,7 +17,7 @@ from gearmath.bevel.method import motion_of
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.machine.planning.curves import hermite_powers, powers_of, steps_between, turning_seconds
+from gearmath.machine.planning.curves import STEPS, hermite_powers, powers_of, steps_between, turning_seconds
 from gearmath.machine.planning.hobbing import HobbingMotion, HobbingPass, off_the_roll, six_axes, spindle_phase
 from gearmath.specs.bevel_set import Flank
 from gearmath.specs.milling_machine import CUTTER_AXIS, MillingMachine
@@ -67,8 +67,7 @@ def hobbed_powers(
     spec: Flank, nodes: np.ndarray, beta: np.ndarray, index_ratio: float, pose: tuple[float, np.ndarray], degree: int
 ) -> np.ndarray:
     """Coefficients (n-1, degree + 1, 6) of the blocks between cradle rotations and angles of the cutter (n,) [rad]."""
-    dense = steps_between(nodes)
-    phase = spindle_phase(spec, dense)[:: (len(dense) - 1) // (len(nodes) - 1), None]
+    phase = spindle_phase(spec, steps_between(nodes))[::STEPS, None]
     slopes, bends = (each[:, None] for each in phase_by_roll()(spec.vector, motion_of(spec), nodes))
     turned = hermite_powers(phase, slopes, bends, np.diff(nodes), degree)
     powers = np.concatenate([powers_of(spec, nodes, *pose, degree), turned], axis=2)
@@ -87,9 +86,8 @@ def curved_hobbing(spec: Flank, motion: HobbingMotion, machine: MillingMachine, 
     nodes, beta = motion.start + roll * shares, drive.beta(turned)
     powers = hobbed_powers(spec, nodes, beta, drive.index_ratio, pose, degree)
     down = np.zeros_like(powers[:1])
-    down[0, 1] = powers[0, 0]  # what it has to go, once its start is known
     down[0, 0] = powers[0, 0] + np.array([0, 0, motion.lift, drive.index_ratio * beta[0], 0, -beta[0]])
-    down[0, 1] -= down[0, 0]
+    down[0, 1] = powers[0, 0] - down[0, 0]
     every = np.concatenate([down, powers])
     seconds = np.diff(np.append(0.0, turned)) * motion.per_turn
     # one pace for all of them, so that cutter and work turn evenly

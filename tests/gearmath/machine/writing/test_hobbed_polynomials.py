@@ -10,10 +10,7 @@ import pytest
 from gearmath.bevel.tooth import SHARP_EDGE
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute
-from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.state import Setup
-from gearmath.machine.control.tree import Block, Branch
-from gearmath.machine.control.values import number
 from gearmath.machine.judging.motion import motion_faults
 from gearmath.machine.judging.program import faults_of, metal_faults
 from gearmath.machine.judging.stated import Stated
@@ -23,15 +20,14 @@ from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
 from gearmath.machine.planning.hobbing import six_axes, spindle_phase
 from gearmath.machine.writing.cutting import cutting_program
-from gearmath.machine.writing.words import Positions
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
+from tests.gearmath.machine.writing.polynomial_text import along_blocks, written_again, written_in
 
 MODULO = load_milling_machine(bundled("vertical_5axis.toml"))
 HOBBED = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
 MEMBERS = ("pinion", "gear")
-WORD = re.compile(r"(?:PO\[([XYZABC])\]=\(|([XYZABC])=PO\()([-0-9.,]+)\)")
 #: Five decimals of mm and six of degrees, with the two more that coefficients have; a degree as so many mm at the work.
 IN_MM = np.array([1.0, 1.0, 1.0, *[math.radians(1.0) * 100.0] * 3])
 
@@ -63,27 +59,10 @@ def roll_of(text):
     now, blocks = {}, []
     for line in text.splitlines():
         if "G93 POLY " in line:
-            written = {a or b: [float(v) for v in values.split(",")] for a, b, values in WORD.findall(line)}
-            blocks.append((written, 60.0 / float(re.search(r" F([0-9.]+)", line)[1])))
+            blocks.append((written_in(line), 60.0 / float(re.search(r" F([0-9.]+)", line)[1])))
         elif line.startswith("N") and not blocks:
             now |= {axis: float(value) for axis, value in re.findall(r" ([XYZABC])(-?[0-9.]+)", line)}
     return np.array([now[axis] for axis in "XYZABC"]), blocks
-
-
-def along(start, blocks, u):
-    """Positions (blocks, n, 6) in mm and degrees at parameters u (n,) of each block: x0 + a1 u + a2 u^2 .."""
-    here, found = start, []
-    for written, _ in blocks:
-        ends = np.array([written[axis][0] for axis in "XYZABC"])
-        higher = [np.array(written[axis][1:]) for axis in "XYZABC"]
-        first = ends - here - np.array([a.sum() for a in higher])
-        axes = [
-            x + a1 * u + sum(a * u**k for k, a in enumerate(more, 2))
-            for x, a1, more in zip(here, first, higher, strict=True)
-        ]
-        found.append(np.stack(axes, axis=1))
-        here = ends
-    return np.stack(found)
 
 
 def judged(text, member, machine):
@@ -122,7 +101,7 @@ def test_work_and_cutter_turn_in_their_ratio_all_along_the_text(member):
     """Blade groups over teeth, typed here: A and C less what the roll does to them stand still, through all turns."""
     spec = HOBBED.member(member)
     start, blocks = roll_of(text_of(member))
-    where = along(start, blocks, np.linspace(0.0, 1.0, 33))[1:]  # behind the plunge
+    where = along_blocks(start, blocks, np.linspace(0.0, 1.0, 33))[1:]  # behind the plunge
     plan = cutting_plan(HOBBED, member, MACHINES[3], job(member))
     nodes = plan.passes[0].theta[1:]
     theta = (nodes[:-1, None] + np.linspace(0.0, 1.0, 33) * np.diff(nodes)[:, None]).ravel()
@@ -151,25 +130,10 @@ def test_without_its_word_poly_the_control_drives_straight_and_mill_sees_it(memb
 @pytest.mark.parametrize("degree", [3, 5])
 def test_what_is_read_is_written_again_byte_for_byte(degree):
     text, machine = text_of("gear", degree=degree), MACHINES[degree]
-
-    def blocks(body):
-        for part in body:
-            if isinstance(part, Branch):
-                yield from blocks(part.then)
-            elif isinstance(part, Block) and any(word.way == "PO" for word in part.words.values()):
-                yield part
-
-    found, positions = list(blocks(read_program(text, "HOB").body)), Positions.of(machine, machine.tool_length)
-    lines, per_internal = text.splitlines(), np.array([1, 1, 1, *[180 / math.pi] * 3])
+    found = list(written_again(text, "HOB", machine, 6, degree))
     assert len(found) == text.count("G93 POLY ") > 1
-    for block in found:
-        ends, bends = np.zeros((2, 6)), np.zeros((1, 6, degree - 1))
-        for k, axis in enumerate("XYZABC"):
-            word = block.words[axis]
-            ends[1, k] = number(word.value, None, "", 0, 0)
-            bends[0, k, : len(word.coefficients)] = [number(a, None, "", 0, 0) for a in word.coefficients]
-        (words,) = positions.polynomial_words(ends / per_internal, bends / per_internal[:, None])
-        assert " ".join(words) in lines[block.line - 1]
+    for words, line in found:
+        assert words in line
 
 
 @pytest.mark.slow
@@ -179,7 +143,7 @@ def test_wrong_digits_that_move_the_tool_are_seen_and_those_that_do_not_pass():
     text = text_of(member)
     lines, u = text.splitlines(), np.linspace(0.0, 1.0, 65)
     start, blocks = roll_of(text)
-    right = along(start, blocks, u)
+    right = along_blocks(start, blocks, u)
     at = [k for k, line in enumerate(lines) if "G93 POLY " in line][2]
     rng = np.random.default_rng(17)
     digits = [m.start() for m in re.finditer(r"[0-9]", lines[at]) if m.start() > lines[at].index("POLY")]
@@ -190,7 +154,7 @@ def test_wrong_digits_that_move_the_tool_are_seen_and_those_that_do_not_pass():
         changed = lines[at][:place] + digit + lines[at][place + 1 :]
         mutant = "\n".join([*lines[:at], changed, *lines[at + 1 :]]) + "\n"
         _, other = roll_of(mutant)
-        moved = float(np.abs((along(start, other, u) - right) * IN_MM).max())
+        moved = float(np.abs((along_blocks(start, other, u) - right) * IN_MM).max())
         faster = max(was / now for (_, was), (_, now) in zip(blocks, other, strict=True))
         verdict = judged(mutant, member, machine)
         if moved > 0.02 or faster > 1.05:
@@ -210,7 +174,7 @@ def test_feeds_keep_speed_acceleration_and_jerk_of_all_axes():
     machine = counting(**limits)
     text = cutting_program(HOBBED, "gear", machine, "HOB", job("gear", 1e-3))
     start, blocks = roll_of(text)
-    fine = along(start, blocks, np.linspace(0.0, 1.0, 2001))
+    fine = along_blocks(start, blocks, np.linspace(0.0, 1.0, 2001))
     used = []
     for axes, (_, seconds) in zip(fine, blocks, strict=True):
         path = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(axes, axis=0), axis=1))]  # a degree counts as a mm

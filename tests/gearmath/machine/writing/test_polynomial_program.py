@@ -14,10 +14,7 @@ from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
 from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.polynomial import CHORD
-from gearmath.machine.control.reader import read_program
 from gearmath.machine.control.state import Setup
-from gearmath.machine.control.tree import Block, Branch
-from gearmath.machine.control.values import number
 from gearmath.machine.judging.cut import as_cut, beside_the_path, metal_left
 from gearmath.machine.judging.motion import motion_faults
 from gearmath.machine.judging.program import faults_of
@@ -26,17 +23,16 @@ from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
 from gearmath.machine.planning.path import axis_positions, flank_points
 from gearmath.machine.writing.cutting import cutting_program
-from gearmath.machine.writing.words import Positions
 from gearmath.specs.bevel_set import SIDES, load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
+from tests.gearmath.machine.writing.polynomial_text import WORD, along_blocks, written_again, written_in
 
 MACHINE = load_milling_machine(bundled("vertical_5axis.toml"))
 QUINTIC = MACHINE.model_copy(update={"control": MACHINE.control.model_copy(update={"polynomial_values": 25})})
 MACHINES = {3: MACHINE, 5: QUINTIC}
 SETS = ("nasa_tp3096_12x36", "spiral_7x43", "crown_gear_universal_14x39")
 ROLLING = [(name, member) for name in SETS for member in ("pinion", "gear")]
-WORD = re.compile(r"(?:PO\[([XYZAB])\]=\(|([XYZAB])=PO\()([-0-9.,]+)\)")
 
 
 @lru_cache
@@ -61,7 +57,7 @@ def rolls(text):
         inverse = (inverse or "G93" in words) and "G94" not in words
         bent = (bent or "POLY" in words) and not words & {"G0", "G1"}
         if WORD.search(line):
-            written = {a or b: [float(v) for v in values.split(",")] for a, b, values in WORD.findall(line)}
+            written = written_in(line)
             written = written if bent else {axis: values[:1] for axis, values in written.items()}
             feed, (start, blocks) = float(re.search(r" F([0-9.]+)", line)[1]), found[-1]
             way = 1.0 if inverse else way_of_last(start, [*blocks, (written, 0.0)])
@@ -82,20 +78,7 @@ def way_of_last(start, blocks):
 
 def positions_of(start, blocks, u):
     """Positions (n,5) in mm and rad along the blocks of a roll, at parameters u (k,) of each: x0 + a1 u + a2 u^2 .."""
-    here, found = start, []
-    for written, _ in blocks:
-        every = [written.get(axis, [here[k]]) for k, axis in enumerate("XYZAB")]  # an axis without a word stays
-        ends = np.array([values[0] for values in every])
-        higher = [np.array(values[1:]) for values in every]
-        first = ends - here - np.array([a.sum() for a in higher])
-        along = [
-            x + a1 * u + sum(a * u**k for k, a in enumerate(more, 2))
-            for x, a1, more in zip(here, first, higher, strict=True)
-        ]
-        found.append(np.stack(along, axis=1))
-        here = ends
-    every = np.concatenate(found)
-    return every * np.array([1, 1, 1, math.pi / 180, math.pi / 180])
+    return np.concatenate(along_blocks(start, blocks, u)) * np.array([1, 1, 1, math.pi / 180, math.pi / 180])
 
 
 def judged(text, name, member, machine=MACHINE):
@@ -163,25 +146,10 @@ def test_every_axis_is_a_function_of_one_parameter_that_the_reader_follows():
 @pytest.mark.parametrize("degree", [3, 5])
 def test_what_is_read_is_written_again_byte_for_byte(degree):
     text = text_of(*ROLLING[4], degree=degree)
-
-    def blocks(body):
-        for part in body:
-            if isinstance(part, Branch):
-                yield from blocks(part.then)
-            elif isinstance(part, Block) and any(word.way == "PO" for word in part.words.values()):
-                yield part
-
-    found, positions = list(blocks(read_program(text, "CUT").body)), Positions.of(MACHINE, MACHINE.tool_length)
-    lines, per_internal = text.splitlines(), np.array([1, 1, 1, 180 / math.pi, 180 / math.pi])
+    found = list(written_again(text, "CUT", MACHINE, 5, degree))
     assert len(found) == text.count("G93 POLY ")
-    for block in found:
-        ends, bends = np.zeros((2, 5)), np.zeros((1, 5, 4 if degree == 5 else 2))
-        for k, axis in enumerate("XYZAB"):
-            word = block.words[axis]
-            ends[1, k] = number(word.value, None, "", 0, 0)
-            bends[0, k, : len(word.coefficients)] = [number(a, None, "", 0, 0) for a in word.coefficients]
-        (words,) = positions.polynomial_words(ends / per_internal, bends / per_internal[:, None])
-        assert " ".join(words) in lines[block.line - 1]
+    for words, line in found:
+        assert words in line
 
 
 @pytest.mark.parametrize("degree", [3, 5])
