@@ -1,11 +1,13 @@
 """Points per second of the solver of every cutting method: compiled, against the CasADi VM and scipy.optimize.fsolve.
 
-Face milling and face hobbing run through the same kernel, and so do 45 points and a million. fsolve takes one point at
-a time and calls the residual through CasADi from Python, which is how such a solver is usually written.
+Face milling and face hobbing run through the same kernel, and so do 45 points and a million. The public row is half
+a flank and half its fillet, through the functions that check convergence. fsolve takes one point at a time and calls
+the residual through CasADi from Python, which is how such a solver is usually written.
 """
 
 from __future__ import annotations
 
+import math
 import time
 import timeit
 
@@ -16,15 +18,17 @@ from scipy.optimize import fsolve
 
 from derivations import generation
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.generation import solve_curve, solve_section
 from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.export.host import compile_kernel
 from gearmath.kernels import kernel
 from gearmath.lowering import lower
-from gearmath.specs.bevel_set import load_bevel_set
+from gearmath.specs.bevel_set import Member, load_bevel_set
 from gearmath.specs.toml import bundled
 
 SETS = {"milled": "crown_gear_formate_14x39.toml", "hobbed": "crown_gear_hobbed_14x39.toml"}
+WITH_EDGE_RADIUS = "spiral_7x43.toml"
 SIZES = {45: (5, 9), 2_500: (50, 50), 1_000_000: (1000, 1000)}
 BY_VM, BY_FSOLVE = 2_500, 100
 
@@ -41,6 +45,19 @@ def arguments(name: str, shape: tuple[int, int]) -> tuple:
     (start,) = compile_kernel(kernel("contact_start"))(how.settings, how.side, axial, radial)
     given = (how.settings, how.motion, how.index_ratio, how.blade_offset_angle, how.side, 1)
     return start, *given, conditions
+
+
+def flank_and_fillet(pinion: Member, shape: tuple[int, int]) -> int:
+    """Number of points that converged on flank and fillet of the concave side, as many on each."""
+    grid, how = blank_grid(pinion, *shape), generation_of(pinion, "concave")
+    axial, radial = grid.axial.ravel(), grid.radial.ravel()
+    sections, delta = blade_sections(pinion.concave, 1), pinion.blank.delta
+    flank = solve_section(how, sections["main"], axial, radial)
+    direction = (math.cos(delta), math.sin(delta))
+    u = np.repeat(np.linspace(sections["edge"].lower, sections["edge"].upper, shape[0]), shape[1])
+    distance, start = axial * direction[0] + radial * direction[1], np.column_stack([u, flank.contact[:, 1:]])
+    fillet = solve_curve(how, sections["edge"], u, direction, distance, start)
+    return int(flank.converged.sum() + fillet.converged.sum())
 
 
 def by_fsolve(start: np.ndarray, *given: np.ndarray) -> np.ndarray:
@@ -77,6 +94,12 @@ def test_points_per_second_of_a_million_compiled_against_the_vm_and_fsolve(
                 seconds.append(time.perf_counter() - begin)
             assert residual.max() < 1e-9  # mm
             rates[f"{name}_{count}"] = count / min(seconds)
+    pinion, seconds = load_bevel_set(bundled(WITH_EDGE_RADIUS)).pinion, []
+    for _ in range(4):
+        begin = time.perf_counter()
+        assert flank_and_fillet(pinion, SIZES[2_500]) == 2 * 2_500
+        seconds.append(time.perf_counter() - begin)
+    rates["public, with fillet"] = 2 * 2_500 / min(seconds)
     given = arguments("milled", SIZES[BY_VM])
     contact = compiled(*given)[0]
     np.testing.assert_allclose(vm(*given)[0], contact, rtol=0, atol=1e-9)
