@@ -127,7 +127,14 @@ def solve_places(
 
 def nominal_points(member: Member, flank: str, grid: Grid) -> tuple[FlankPoints, np.ndarray]:
     """Points that the main section of the blade cuts on a grid, and their residuals, for every cutting method."""
-    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
+    return _points(*_generated(member, flank), grid)
+
+
+def _generated(member: Member, flank: str) -> tuple[Generation, Section]:
+    return generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
+
+
+def _points(how: Generation, section: Section, grid: Grid) -> tuple[FlankPoints, np.ndarray]:
     place = (grid.axial.ravel(), grid.radial.ravel())
     if how.still and how.rolling and section.arc is None:
         simple, residual = solve_places(how.settings, how.side, *place)
@@ -145,8 +152,8 @@ def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoint
     """
     if flank not in FLANKS:
         raise ValueError(f"flank = {flank!r}: must be one of {FLANKS}")
-    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
-    found, residual = nominal_points(member, flank, grid)
+    how, section = _generated(member, flank)
+    found, residual = _points(how, section, grid)
     sense = turning_sense(how, section, found.contact)
     points = SurfacePoints(found.contact, found.point, found.normal, residual, sense)
     u, unit = points.contact[:, 0], "mm" if section.arc is None else "rad"

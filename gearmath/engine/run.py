@@ -199,7 +199,8 @@ class _Block:
 
 
 def _pointers(arrays: Sequence[np.ndarray]) -> Any:
-    return (ctypes.c_void_p * len(arrays))(*(array.ctypes.data for array in arrays))
+    # the interface of the array is a third of the time of `array.ctypes`, which counts where points are few
+    return (ctypes.c_void_p * len(arrays))(*[array.__array_interface__["data"][0] for array in arrays])
 
 
 @lru_cache(maxsize=1024)

@@ -56,8 +56,8 @@ class Motion(Sheet):
         """The motion as the matrix of ``notation.motion`` (10,7), mm and rad, without the modified roll."""
         matrix = np.zeros(notation.motion.shape)
         for row, name in zip(matrix, MACHINE_SETTINGS, strict=True):
-            values = np.array(getattr(self, name), dtype=float)
-            row[: len(values)] = np.radians(values) if name in ANGULAR else values
+            if values := getattr(self, name):
+                row[: len(values)] = np.radians(values) if name in ANGULAR else values
         return matrix
 
     @property
