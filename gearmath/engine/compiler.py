@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
+import os
 import platform
 import shutil
 import subprocess
@@ -57,14 +58,20 @@ def build(files: Mapping[str, str], folder: Path, flags: Sequence[str] = FLAGS) 
 
 
 def load(library: Path) -> ctypes.CDLL:
-    """A library; its folder, which is ours, goes when the library object goes."""
+    """A library; its folder, which is ours, goes: at once, or with the library object where open files cannot go.
+
+    A process that is killed would leave it behind otherwise.
+    """
     loaded = ctypes.CDLL(str(library))
-    weakref.finalize(loaded, shutil.rmtree, library.parent, ignore_errors=True)
+    if os.name == "posix":
+        shutil.rmtree(library.parent, ignore_errors=True)
+    else:
+        weakref.finalize(loaded, shutil.rmtree, library.parent, ignore_errors=True)
     return loaded
 
 
 def compile_library(files: Mapping[str, str], flags: Sequence[str] = FLAGS) -> ctypes.CDLL:
-    """Compile texts of C into one shared library, in a folder that lives as long as it, and load it."""
+    """Compile texts of C into one shared library, in a folder of its own, and load it."""
     folder = Path(tempfile.mkdtemp(prefix="gearmath-"))
     try:
         return load(build(files, folder, flags))

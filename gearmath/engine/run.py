@@ -24,7 +24,7 @@ import numpy as np
 
 from gearmath.engine import cache as kept
 from gearmath.engine import vector_c as vector_module
-from gearmath.engine.compiler import SUFFIX, compile_library, find_compiler, identity, load
+from gearmath.engine.compiler import SUFFIX, build, find_compiler, identity, load
 from gearmath.engine.vector_c import LANES, NoVectorForm, vector_c
 from gearmath.errors import ComputationError
 
@@ -238,26 +238,28 @@ def _name(function: ca.Function, many: tuple[bool, ...]) -> str:
 def _looked_up(name: str) -> ctypes.CDLL | None:
     """The library that was compiled before, if it was."""
     data = kept.read(name)
-    if data is None:
-        return None
-    # loaded from a copy of what was checked, so that nobody can exchange it in between
-    folder = Path(tempfile.mkdtemp(prefix="gearmath-"))
-    library = folder / f"libkernels{SUFFIX}"
-    library.write_bytes(data)
     try:
-        return load(library)
+        return None if data is None else _loaded(data)
     except OSError:
         return None
+
+
+def _loaded(data: bytes) -> ctypes.CDLL:
+    """A library from a copy of what was read, or compiled, so that nobody can exchange it in between."""
+    library = Path(tempfile.mkdtemp(prefix="gearmath-")) / f"libkernels{SUFFIX}"
+    library.write_bytes(data)
+    return load(library)
 
 
 def _compiled(name: str, function: ca.Function, many: tuple[bool, ...]) -> ctypes.CDLL | None:
     """The library compiled now and kept; None where the function has no vector form, or the compiler fails."""
     try:
-        library = compile_library({"kernel.c": vector_c(function, many)}, FLAGS)
+        with tempfile.TemporaryDirectory(prefix="gearmath-") as folder:
+            data = build({"kernel.c": vector_c(function, many)}, Path(folder), FLAGS).read_bytes()
     except (NoVectorForm, ComputationError):
         return None
-    kept.write(name, Path(library._name).read_bytes())
-    return library
+    kept.write(name, data)
+    return _loaded(data)
 
 
 @cache

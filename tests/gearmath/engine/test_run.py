@@ -81,6 +81,27 @@ def test_a_damaged_library_is_compiled_anew(place: Path, host_compiler, monkeypa
     assert cache.read(library.name) is not None
 
 
+@pytest.mark.skipif(os.name != "posix", reason="elsewhere a library that is open cannot be removed")
+def test_a_process_that_is_killed_leaves_no_library_behind(tmp_path: Path, host_compiler) -> None:
+    program = (
+        "import os, signal, casadi as ca, numpy as np\n"
+        "from gearmath.engine import run\n"
+        "run._ASK = run._COMPILE = 0.0\n"
+        "x = ca.SX.sym('x')\n"
+        "for many in ((True,), (True,)):\n"  # the first compiles, the second loads what was kept
+        "    runner = run.KernelRunner(ca.Function('f', [x], [ca.sin(x)]), many)\n"
+        "    runner([np.ones((9, 1))], 9)\n"
+        "    assert runner._compiled is not None\n"
+        "os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    left, cached = tmp_path / "left", tmp_path / "cached"
+    left.mkdir()
+    environment = os.environ | {"TMPDIR": str(left), "GEARMATH_CACHE": str(cached)}
+    assert subprocess.run([sys.executable, "-c", program], env=environment).returncode == -9
+    assert len(list(cached.glob("kernel-*"))) == 1
+    assert not list(left.iterdir())
+
+
 def test_without_a_compiler_it_is_said_once_and_the_virtual_machine_runs(place, monkeypatch, capsys) -> None:
     monkeypatch.setattr(compiler.shutil, "which", lambda _: None)
     monkeypatch.setattr(compiler.importlib.util, "find_spec", lambda _: None)
