@@ -8,16 +8,19 @@ from gearmath.errors import counted
 from gearmath.gearbox.job import PROPOSED, GearboxJob, ThreadPlan
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
+from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.motion_limits import EASY_MOTOR, hurries, motor_rpm
 from gearmath.specs.ratio import EXACT_INCH, INCH
 
 
-def plan_text(job: GearboxJob) -> str:
-    """The plan of a gear or of a thread."""
+def plan_text(job: GearboxJob, machine: HobbingMachine) -> str:
+    """The plan of a gear or of a thread on a machine."""
     if isinstance(job, ThreadPlan):
-        rows = [*_thread(job), *_rates(job, "spindle")]
+        rows = [*_thread(job), *_rates(job, "spindle"), *_motor(job, machine), *_motion(job, "spindle")]
     else:
         assert isinstance(job, GearboxPlan)
-        rows = [*_gear(job), *_rates(job, "hob"), *(row for blank in job.blanks for row in _blank(blank))]
+        rows = [*_gear(job), *_rates(job, "hob"), *_motor(job, machine), *_motion(job, "hob")]
+        rows += [row for blank in job.blanks for row in _blank(blank)]
     return "\n".join(rows)
 
 
@@ -46,7 +49,12 @@ def _rates(job: GearboxJob, what: str) -> Iterator[str]:
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
     if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
         yield f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}"
-    yield from _motion(job, what)
+
+
+def _motor(job: GearboxJob, machine: HobbingMachine) -> Iterator[str]:
+    rpm = motor_rpm(machine, job.step_rate_hz)
+    quick = f": a step motor has little torque above {EASY_MOTOR} rpm" * (hurries(machine) and rpm > EASY_MOTOR)
+    yield f"  motor  {rpm:9.0f} rpm{quick}"
 
 
 def _motion(job: GearboxJob, what: str) -> Iterator[str]:

@@ -210,7 +210,7 @@ def _check_speed(machine: HobbingMachine, what: str, rpm: float, highest: float)
         return
     limits = machine.limits
     limit = (
-        f"limits.hob_rpm = {limits.hob_rpm:g}"
+        f"{machine.speed_key} = {limits.hob_rpm:g}"
         if highest == limits.hob_rpm
         else f"limits.step_rate_hz = {limits.step_rate_hz:g}"
     )

@@ -17,6 +17,9 @@ from gearmath.errors import InputError
 from gearmath.files import read_text
 from gearmath.specs.refusal import sentence
 
+#: So many characters of a line a message shows.
+_SHOWN = 80
+
 
 class Spec(BaseModel):
     """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
@@ -52,14 +55,21 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     try:
         values = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # no TOML, or numbers and nesting beyond all measure
-        raise InputError(f"{name}: is no TOML: {error}{_comma(text, str(error))}") from error
+        raise InputError(f"{name}: is no TOML: {error}{_line(text, str(error))}") from error
     return _checked(values, model, model.from_file, name)
 
 
-def _comma(text: str, refusal: str) -> str:
-    """What to say of a decimal comma in the line that a refusal names; empty where there is none."""
+def _line(text: str, refusal: str) -> str:
+    """What is to be said of the line that a refusal names: its key, where that stands twice, or its decimal comma."""
     line, lines = re.search(r"at line (\d+)", refusal), text.splitlines()
-    number = re.search(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$", lines[int(line[1]) - 1]) if line else None
+    if line is None or int(line[1]) > len(lines):
+        return ""
+    stands = lines[int(line[1]) - 1].strip()
+    if refusal.startswith("Cannot overwrite"):
+        return f"; the key {stands.split('=')[0].strip()!r} stands a second time there: {stands[:_SHOWN]}"
+    if refusal.startswith("Cannot declare"):
+        return f"; the section {stands[:_SHOWN]} stands a second time there"
+    number = re.search(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$", stands)
     return f"; {number[1]} has a decimal comma, TOML wants a point" if number else ""
 
 

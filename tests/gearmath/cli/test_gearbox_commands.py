@@ -71,7 +71,7 @@ def test_plan_of_a_shifted_gear_gives_the_published_span(capsys, tmp_path):
 
 def test_plan_says_when_the_firmware_would_refuse(capsys):
     _, out, _ = gearmath(capsys, "gearbox", "plan", "hobbing_plewes.toml", "--teeth", "4", "--hob", "m1")
-    assert "refuses this job while limits.hob_rpm is more than 594" in out  # 40 kHz / 4000 steps a turn, less 1 %
+    assert "refuses this job while limits.hob_rpm is more than 297" in out  # 20 kHz / 4000 steps a turn, less 1 %
 
 
 def test_plan_of_a_thread(capsys):
@@ -160,7 +160,7 @@ def test_long_simulation_shows_its_progress(capsys, monkeypatch):
         (("plan", "hobbing_plewes.toml", "--teeth", "ten"), ("--teeth", "ten")),
         (("plan", "hobbing_plewes.toml"), ("--teeth",)),
         (("plan", "hobbing_plewes.toml", "--teeth", "-7"), ("teeth = -7", "between 1 and 999")),
-        (("plan", "hobbing_plewes.toml", "--teeth", "10", "--rpm", "900"), ("900", "800.0 rpm", "limits.hob_rpm")),
+        (("plan", "hobbing_plewes.toml", "--teeth", "12", "--rpm", "900"), ("900", "800.0 rpm", "limits.hob_rpm")),
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--pitch", "2mm"), ("hobbing machine", "--teeth")),
         (("plan", "lathe_example.toml", "--teeth", "10"), ("lathe", "--pitch")),
         (("plan", "lathe_example.toml", "--pitch", "2inch"), ("2inch", "23/2tpi")),
@@ -194,9 +194,9 @@ PLEWES = bundled("hobbing_plewes.toml").read_text("utf-8")
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 40000", "tb6560", "at most 3225")),
-        ("[pins]", "[pins]\nindex = 13", ("pins: index = 13", "already that of step_out")),
-        ('name = "unsure"', 'name = "nema"', ("driver: name = 'nema'", "known are gecko201")),
+        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 20000", "tb6560", "at most 3225")),
+        ("[pins]", "[pins]\nindex = 13", ("pins.index = 13", "already that of step_out")),
+        ('name = "unsure"', 'name = "nema"', ("driver.name = 'nema'", "known are gecko201")),
         ('decoder = "ls7184_x4"\n', "", ("encoder.decoder", "missing")),
         ('Machinist 15-4"', 'Machinist \\"15-4\\""', ("name = ", "plain letters")),
         ("lines = 1024", "lines = 10001", ("encoder.lines = 10001", "at most 10000 lines")),

@@ -15,6 +15,8 @@ from gearmath.export.markdown import escaped
 from gearmath.export.netlist import netlist
 from gearmath.export.teensy import teensy_files
 from gearmath.export.wiring import wiring_svg
+from gearmath.specs.drive import Encoder, Feed
+from gearmath.specs.drivers import Driver
 from gearmath.specs.hobbing import HobbingMachine, Limits, load_hobbing_machine
 from gearmath.specs.toml import bundled
 
@@ -55,9 +57,17 @@ def test_pin_table_is_that_of_the_machine(name: str) -> None:
 def test_every_label_and_page_that_is_explained_exists_on_the_display(name: str) -> None:
     text = guide(machine(name), "gearbox")
     explained = re.findall(r"`([^`]+)`", text[text.index("## Commissioning") :])
-    for label in explained:
+    for label in (" ".join(words.split()) for words in explained):
         key = label.split(" = ")[0]  # of the machine file
-        known = key in {*Limits.model_fields, "invert_direction"} or label == "gearmath gearbox plan"
+        keys = {
+            *Limits.model_fields,
+            *Driver.model_fields,
+            *Encoder.model_fields,
+            *Feed.model_fields,
+            "[encoder]",
+            "[feed]",
+        }
+        known = key in keys or label == "gearmath gearbox plan"
         assert known or label in screen(), label
 
 

@@ -94,7 +94,7 @@ def firmware(name: str, **changes: str) -> tuple[HobbingMachine, Firmware]:
 
 @pytest.fixture(scope="module")
 def helical() -> tuple[HobbingMachine, Firmware]:
-    return firmware("hobbing_helical.toml")
+    return firmware("hobbing_helical.toml", step_rate_hz="40000.0")  # enough for six teeth
 
 
 @pytest.fixture(scope="module")
