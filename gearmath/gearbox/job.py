@@ -205,7 +205,9 @@ def _highest_rpm(machine: HobbingMachine, ratio: Fraction) -> float:
 
 def _check_speed(machine: HobbingMachine, what: str, rpm: float, highest: float) -> None:
     if not 0.0 < rpm < float("inf"):
-        raise InputError(f"rpm = {rpm:g}: must be a positive speed")
+        raise InputError(
+            f"rpm = {rpm:g}: must be a positive speed, at most {machine.speed_key} = {machine.limits.hob_rpm:g}"
+        )
     if rpm <= highest:
         return
     limits = machine.limits

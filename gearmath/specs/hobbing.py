@@ -65,6 +65,17 @@ class Limits(Spec):
     lag_steps: int = Field(ge=1, le=30_000)
     """Steps that may wait before the gearbox trips."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _one_speed(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            given = [f"{key} = {data[key]}" for key in ("hob_rpm", "spindle_rpm") if key in data]
+            if len(given) > 1:
+                raise ValueError(f"{' and '.join(given)}: are one limit, use one of them")
+            if not given:
+                raise ValueError("hob_rpm is missing, which of a lathe is called spindle_rpm")
+        return data
+
 
 class HobbingMachine(Spec):
     """A hobbing machine, or a lathe, with an electronic gearbox. Names as in the generated ``gm_machine.h``."""

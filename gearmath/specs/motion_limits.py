@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 TRIAL_TEETH = 24
 #: Part of the highest speed at which the motor must follow that work at the least.
 TRIAL_SPEED = Fraction(1, 10)
-#: So fast a step motor without an encoder is run with torque for a cut, and no motor at all is run faster [1/min].
-EASY_MOTOR, FASTEST_MOTOR = 1500, 6000
+#: Speed up to which a step motor without an encoder has torque for a cut; what such a motor and what
+#: any other never exceeds [1/min].
+EASY_MOTOR, FASTEST_STEPPER, FASTEST_MOTOR = 1500, 3000, 6000
 #: Longest time to the speed of a move, and to the step rate [s].
 LONGEST_RAMP, LONGEST_RUN_UP = 10.0, 60.0
 
@@ -26,8 +27,12 @@ def motor_rpm(machine: HobbingMachine, steps_per_s: float) -> float:
 
 def hurries(machine: HobbingMachine) -> bool:
     """Whether limits.step_rate_hz asks an ordinary step motor for more speed than such motors have torque at."""
-    plain = machine.drive.pulses is None and not machine.driver.timing.closed_loop
-    return plain and motor_rpm(machine, machine.max_step_rate) > EASY_MOTOR
+    return _plain(machine) and motor_rpm(machine, machine.max_step_rate) > EASY_MOTOR
+
+
+def _plain(machine: HobbingMachine) -> bool:
+    """Whether it is a step motor that nothing but its steps leads."""
+    return machine.drive.pulses is None and not machine.driver.timing.closed_loop
 
 
 def easy_rate(machine: HobbingMachine) -> int:
@@ -73,19 +78,21 @@ def _check_work(machine: HobbingMachine) -> None:
     if limits.step_rate_hz < needed:
         raise ValueError(
             f"limits.step_rate_hz = {limits.step_rate_hz:g}: {work} needs {needed} steps/s at {rpm:g} rpm, a tenth of "
-            f"{machine.speed_key}; write at least {needed} if driver and motor carry it, or take fewer microsteps or a "
-            f"lower {machine.speed_key}"
+            f"{machine.speed_key}; write at least {needed} if driver and motor carry it, or take fewer steps per turn "
+            f"of the motor or a lower {machine.speed_key}"
         )
 
 
 def _check_motor(machine: HobbingMachine) -> None:
     rate = machine.limits.step_rate_hz
-    rpm = motor_rpm(machine, rate)
-    if rpm > FASTEST_MOTOR:
+    rpm, (most, what) = motor_rpm(machine, rate), (FASTEST_MOTOR, "such motor")
+    if _plain(machine):
+        most, what = FASTEST_STEPPER, "step motor"
+    if rpm > most:
         pulses = machine.drive.pulses_per_turn
         raise ValueError(
-            f"limits.step_rate_hz = {rate:g}: with {pulses} steps per turn of the motor that is {rpm:.0f} rpm, no such "
-            f"motor turns faster than {FASTEST_MOTOR}; write at most {int(FASTEST_MOTOR * pulses / 60)}, or the "
+            f"limits.step_rate_hz = {rate:g}: with {pulses} steps per turn of the motor that is {rpm:.0f} rpm, no "
+            f"{what} turns faster than {most}; write at most {int(most * pulses / 60)}, or the "
             "microsteps that the driver is really set to"
         )
 

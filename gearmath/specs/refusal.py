@@ -71,6 +71,8 @@ def sentence(error: ValidationError, model: type[Spec]) -> str:
         return f"{key}.{what}{more}"
     if first["type"] == "missing" and loc and isinstance(loc[-1], int):
         what, key = f"value {loc[-1] + 1} of the list is missing", _dotted(loc[:-1])
+    elif first["type"] == "missing" and _keys(model, loc):
+        what = f"the section [{key}] is missing"
     value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {_short(first['input'])}"
     return f"{key}{value}: {what}{more}" if key else f"{what}{more}"
 

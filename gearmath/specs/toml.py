@@ -54,8 +54,10 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     """Check TOML text against ``model``; ``name`` is the file's name in the messages."""
     try:
         values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # no TOML, or numbers and nesting beyond all measure
+    except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name}: is no TOML: {error}{_line(text, str(error))}") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{name}: is no TOML: a number of thousands of digits, or lists within lists") from error
     return _checked(values, model, model.from_file, name)
 
 
@@ -65,6 +67,8 @@ def _line(text: str, refusal: str) -> str:
     if line is None or int(line[1]) > len(lines):
         return ""
     stands = lines[int(line[1]) - 1].strip()
+    if refusal.startswith("Cannot overwrite") and stands.startswith("[["):
+        return f"; {stands[:_SHOWN]} is a list of tables, all of which have double brackets"
     if refusal.startswith("Cannot overwrite"):
         return f"; the key {stands.split('=')[0].strip()!r} stands a second time there: {stands[:_SHOWN]}"
     if refusal.startswith("Cannot declare"):
@@ -98,5 +102,7 @@ def bundled(name: str) -> Path:
 
 def find(name: str) -> Path:
     """A file by its path or, where a bare name is no file here, the bundled file of that name."""
+    if not name:
+        raise InputError("a file must be named, its name is empty")
     path = Path(name)
     return path if path.is_file() or path.name != name else bundled(name)
