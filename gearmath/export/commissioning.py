@@ -15,6 +15,8 @@ from gearmath.specs.motion_limits import TRIAL_TEETH
 _SLIP = 4
 #: Most starts of a thread.
 _STARTS = 10
+#: A pinion that is cut on such machines.
+_SMALL = 6
 
 
 def commissioning(machine: HobbingMachine) -> Iterator[str]:
@@ -145,10 +147,8 @@ def _direction_of_the_feed(machine: HobbingMachine) -> str:
 
 def _full_rate_of_a_gear(machine: HobbingMachine) -> str:
     """The firmware takes the fewest teeth whose steps keep the rate up to the highest speed of the hob."""
-    per_turn = machine.motor_steps * machine.hob_starts
-    turns = Fraction(machine.limits.hob_rpm) / 60
-    teeth = max(1, math.ceil(turns * per_turn * TRIP / machine.max_step_rate))
-    rate = float(turns * per_turn / teeth)
+    teeth = _fewest_teeth(machine)
+    rate = float(Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts / teeth)
     return (
         f"The motor at its full rate: job of {teeth} {'teeth' if teeth > 1 else 'tooth'}, no blank, a line across "
         f"table and frame, `Start?` yes with the hob at rest. Run the hob up to {machine.limits.hob_rpm:g} rpm: the "
@@ -156,6 +156,26 @@ def _full_rate_of_a_gear(machine: HobbingMachine) -> str:
         f"{_up(machine, rate, 'hob')} Leave it there for a minute, switch the hob off, and turn it on by "
         "hand until the second page shows `Table` "
         f"0.00 deg: the line must be back. {_slip(machine, 'table')}"
+    )
+
+
+def _fewest_teeth(machine: HobbingMachine) -> int:
+    """The fewest teeth that the firmware takes: they keep the rate up to the speed at which it trips."""
+    at_one = Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts * TRIP
+    return max(1, math.ceil(at_one / machine.max_step_rate))
+
+
+def _pinions(machine: HobbingMachine) -> Iterator[str]:
+    """What must be changed for gears of fewer teeth."""
+    teeth = _fewest_teeth(machine)
+    if teeth <= _SMALL:
+        return
+    rpm = math.floor(machine.max_step_rate * _SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
+    yield (
+        f"With {machine.hob_starts} start{'s' * (machine.hob_starts > 1)} of the hob the firmware takes {teeth} teeth "
+        f"and more: at {machine.limits.hob_rpm:g} rpm fewer need more than {machine.max_step_rate} steps/s, and the "
+        f"start says `too many steps/s` and `Set limit`. Write that limit into the machine file, for {_SMALL} teeth "
+        f"`hob_rpm = {rpm}`, export again, and do not run the hob faster."
     )
 
 
@@ -206,7 +226,7 @@ def first_cut(machine: HobbingMachine) -> Iterator[str]:
         f"The motor speeds up by {acceleration:g} steps/s every second. `gearmath gearbox plan` tells for each job how "
         "long the run-up takes, and after how long a running machine is caught up. Do not cut before `In phase`."
     )
-    advice = (common, *(_THREAD if lathe else _GEAR))
+    advice = (common, *(_THREAD if lathe else (*_pinions(machine), *_GEAR)))
     yield from bullets(advice, numbered=True)
 
 

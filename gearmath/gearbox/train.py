@@ -114,7 +114,7 @@ def plan(
         raise InputError(f"{machine.name}: teeth = {teeth}: {reason}; {other}")
     blanks = tuple(_blank(machine, teeth, starts, chosen, helix, shift, pin) for chosen in hobs)
     if pin is not None and all(blank.over_pins is None for blank in blanks):
-        usual = ", ".join(f"{PIN * chosen.module_mm:.4g} mm with {chosen.name}" for chosen in hobs)
+        usual = ", ".join(f"{PIN * chosen.module_mm:.4g} mm ({chosen.name})" for chosen in hobs)
         raise InputError(f"pin = {pin:g}: does not lie on the flanks of {teeth} teeth; usual are {usual}")
     return GearboxPlan(
         **job_values(machine, ratio, rpm, f"{teeth} teeth", run_up),  # type: ignore[arg-type]

@@ -171,6 +171,35 @@ def test_long_simulation_shows_its_progress(capsys, monkeypatch):
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--helix", "9", "--feed", "x"), ("feed = 'x'", "mm")),
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--helix", "9", "--hob", "m1"), ("helix = 9", "encoder")),
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--hob", "m2"), ("m2", "m1")),
+        (
+            ("plan", "hobbing_plewes.toml", "--teeth", "24", "--rpm", "nan"),
+            ("rpm = nan", "limits.hob_rpm = 800"),
+        ),
+        (("plan", "hobbing_plewes.toml", "--teeth", "24", "--run-up", "-1"), ("run_up = -1", "between 0 and 600 s")),
+        (("plan", "hobbing_plewes.toml", "--teeth", "24", "--run-up", "nan"), ("run_up = nan", "between 0 and 600 s")),
+        (
+            ("plan", "hobbing_plewes.toml", "--teeth", "24", "--hob", "m1", "--pin", "1e9"),
+            ("pin = 1e+09", "24 teeth", "1.68 mm"),
+        ),
+        (("plan", "", "--teeth", "24"), ("must be named", "empty")),
+        (
+            ("simulate", "hobbing_plewes.toml", "--teeth", "9", "--pattern", "forward", "--edges", "9" * 23),
+            ("edges = 999", "between 1 and 1000000000000"),
+        ),
+        (
+            (
+                "simulate",
+                "lathe_example.toml",
+                "--pitch",
+                "1mm",
+                "--pattern",
+                "dither",
+                "--edges=9",
+                "--start",
+                "9" * 20,
+            ),
+            ("start = 999", "between 0 and 4611686018427387904"),
+        ),
         (("simulate", "hobbing_plewes.toml", "--teeth", "10", "--pattern", "forward", "--edges", "0"), ("--edges",)),
         (
             ("simulate", "hobbing_plewes.toml", "--teeth", "10", "--pattern", "back", "--edges", "9"),
