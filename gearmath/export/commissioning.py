@@ -69,9 +69,11 @@ def _moving(machine: HobbingMachine) -> Iterator[str]:
     lathe, leading, limits = machine.profile == "lathe", _leading(machine), machine.limits
     driven, free = ("lead screw", "half nut open") if lathe else ("table", "nothing clamped, the hob clear of it")
     seconds = float(machine.motor_steps) / machine.move_max_rate + machine.move_max_rate / limits.acceleration_hz_per_s
+    stop = "the emergency stop" if machine.pins.estop is not None else "the switch of G2, there is no emergency stop"
     yield (
-        f"Motor power on, {free}. `test one turn`: draw a line across {driven} and frame, answer yes; in about "
-        f"{seconds:.0f} s {round(machine.motor_steps)} steps must bring the line back exactly. If not, full steps, "
+        f"Motor power on, {free}. Have a hand on {stop}. `test one turn`: draw a line across "
+        f"{driven} and frame, answer yes; in about {seconds:.0f} s {round(machine.motor_steps)} "
+        f"steps must bring the line back exactly. If not, full steps, "
         f"microsteps{' or belt' if lathe else ', belt or worm'} of the machine file are not those of the machine: "
         "where it makes half a turn the driver makes twice the microsteps that the file says, where two turns, half."
     )

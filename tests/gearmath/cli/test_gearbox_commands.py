@@ -69,6 +69,28 @@ def test_plan_of_a_shifted_gear_gives_the_published_span(capsys, tmp_path):
     assert "of 5.5 mm" in out
 
 
+@pytest.mark.parametrize(
+    ("job", "said"),
+    [
+        (("hobbing_helical.toml", "--teeth", "30", "--hob", "m1", "--helix", "20.12"), ""),
+        (("hobbing_helical.toml", "--teeth", "30", "--hob", "m1", "--helix", "20.123"), "0.01 deg, 20.12"),
+        (("hobbing_default.toml", "--teeth", "30", "--hob", "m1", "--helix", "20", "--feed", "0.25"), ""),
+        (("hobbing_default.toml", "--teeth", "30", "--hob", "m1", "--helix", "20", "--feed", "0.255"), "0.01 mm, 0.2"),
+        (("lathe_example.toml", "--pitch", "1.255mm"), ""),
+        (("lathe_example.toml", "--pitch", "1.251mm"), "0.005 mm"),
+        (("lathe_example.toml", "--pitch", "11.5tpi"), ""),
+        (("lathe_example.toml", "--pitch", "11.4tpi"), "0.25 threads"),
+        (("lathe_example.toml", "--pitch", "1.5m"), ""),
+        (("lathe_example.toml", "--pitch", "16dp"), ""),
+    ],
+)
+def test_plan_says_what_the_knob_cannot_be_turned_to(capsys, job, said):
+    """GM_TPI_DETENT, GM_PITCH_DETENT, GM_HELIX_DETENT and GM_FEED_DETENT of gm_edit.c."""
+    _, out, _ = gearmath(capsys, "gearbox", "plan", *job)
+    assert ("not on the display" in out) == bool(said)
+    assert said in out
+
+
 def test_plan_says_when_the_firmware_would_refuse(capsys):
     _, out, _ = gearmath(capsys, "gearbox", "plan", "hobbing_plewes.toml", "--teeth", "4", "--hob", "m1")
     assert "refuses this job while limits.hob_rpm is more than 297" in out  # 20 kHz / 4000 steps a turn, less 1 %
