@@ -55,7 +55,7 @@ def _plain(name: str) -> str:
 class Limits(Spec):
     """What the machine can do: speed of hob or spindle [1/min], rates [steps/s], acceleration [steps/s^2]."""
 
-    hob_rpm: float = Field(gt=0.0, le=20_000.0, validation_alias=AliasChoices("hob_rpm", "spindle_rpm"))
+    hob_rpm: float = Field(ge=1.0, le=20_000.0, validation_alias=AliasChoices("hob_rpm", "spindle_rpm"))
     step_rate_hz: float = Field(ge=10.0, le=1e6)
     move_rate_hz: float | None = Field(default=None, ge=10.0, le=1e6)
     """Of a jog or an index move; 2000, or the step rate where that is less, if not given."""

@@ -85,7 +85,7 @@ WRONG = [
     (HOBBER, "estop = 11", "sda = 4", "pins.sda = 4: must be 18"),
     (HOBBER, "address = 0x27", "address = 0x50", "display.address = 0x50; 0x20 to 0x27"),
     (HOBBER, '"pcf8574"', '"lcd"', "display.kind = 'lcd': must be; 'adafruit292'"),
-    (HOBBER, "hob_rpm = 800.0", "hob_rpm = 0.0", "limits.hob_rpm = 0.0: must be greater than 0"),
+    (HOBBER, "hob_rpm = 800.0", "hob_rpm = 0.0", "limits.hob_rpm = 0.0: must be at least 1"),
     (HOBBER, "hob_rpm = 800.0", "hob_rpm = nan", "limits.hob_rpm = nan: must be a finite number"),
     (HOBBER, "= 20000.0", "= 5.0", "limits.step_rate_hz = 5.0: must be at least 10"),
     (HOBBER, "= 20000.0", "= 1e9", "limits.step_rate_hz = 1000000000.0: must be at most 1000000"),
