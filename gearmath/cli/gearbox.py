@@ -80,7 +80,7 @@ def plan_job(job: Job, as_json: bool) -> None:
     if as_json:
         echo_json(_values(job.to_dict()))
     else:
-        click.echo(plan_text(job.plan))
+        click.echo(plan_text(job.plan, job.machine))
 
 
 @gearbox.command("simulate")

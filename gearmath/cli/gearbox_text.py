@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 
 from gearmath.errors import counted
 from gearmath.gearbox.job import PROPOSED, GearboxJob, ThreadPlan
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
-from gearmath.specs.ratio import EXACT_INCH, INCH
+from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.motion_limits import EASY_MOTOR, hurries, motor_rpm
+from gearmath.specs.ratio import EXACT_INCH, INCH, PI
 
 
-def plan_text(job: GearboxJob) -> str:
-    """The plan of a gear or of a thread."""
+def plan_text(job: GearboxJob, machine: HobbingMachine) -> str:
+    """The plan of a gear or of a thread on a machine."""
     if isinstance(job, ThreadPlan):
-        rows = [*_thread(job), *_rates(job, "spindle")]
+        rows = [*_thread(job), *_rates(job, "spindle"), *_motor(job, machine), *_motion(job, "spindle")]
     else:
         assert isinstance(job, GearboxPlan)
-        rows = [*_gear(job), *_rates(job, "hob"), *(row for blank in job.blanks for row in _blank(blank))]
+        rows = [*_gear(job), *_rates(job, "hob"), *_motor(job, machine), *_motion(job, "hob")]
+        rows += [row for blank in job.blanks for row in _blank(blank)]
     return "\n".join(rows)
 
 
@@ -46,7 +50,12 @@ def _rates(job: GearboxJob, what: str) -> Iterator[str]:
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
     if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
         yield f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}"
-    yield from _motion(job, what)
+
+
+def _motor(job: GearboxJob, machine: HobbingMachine) -> Iterator[str]:
+    rpm = motor_rpm(machine, job.step_rate_hz)
+    quick = f": a step motor has little torque above {EASY_MOTOR} rpm" * (hurries(machine) and rpm > EASY_MOTOR)
+    yield f"  motor  {rpm:9.0f} rpm{quick}"
 
 
 def _motion(job: GearboxJob, what: str) -> Iterator[str]:
@@ -75,10 +84,18 @@ def _resolution(count_um: float, step_um: float, where: str) -> str:
 def _thread(job: ThreadPlan) -> Iterator[str]:
     tpi = EXACT_INCH / job.pitch
     yield f"{job.machine}: {job.hand}-hand thread of {float(job.pitch):.6g} mm ({float(tpi):.6g} tpi)"
+    if not _settable(job.pitch):
+        yield "  not on the display: its knob goes by 0.005 mm of pitch or module, and by 0.25 threads per inch or DP"
     if job.starts > 1:
         yield f"  {job.starts} starts, lead {float(job.lead):.6g} mm"
     yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
     yield "  " + _resolution(job.count_um, job.step_um, "of the carriage")
+
+
+def _settable(pitch: Fraction) -> bool:
+    """Whether the pages of the firmware can be turned to a pitch, in mm, tpi, module or diametral pitch."""
+    lengths = (pitch, pitch / PI)
+    return any((200 * length).denominator == 1 or (4 * EXACT_INCH / length).denominator == 1 for length in lengths)
 
 
 def _gear(job: GearboxPlan) -> Iterator[str]:
@@ -89,10 +106,14 @@ def _gear(job: GearboxPlan) -> Iterator[str]:
         return
     helix = job.helix
     yield f"  helix {helix.helix_deg:g} deg {helix.hand} hand, lead {helix.lead:.4f} mm, {helix.cut} cut"
+    if abs(100.0 * helix.helix_deg - round(100.0 * helix.helix_deg)) > 1e-9:
+        yield f"  not on the display: its knob goes by 0.01 deg, {helix.helix_deg:.2f} is another ratio"
     if helix.feed_mm is None:
         yield f"  feed {job.feed_numerator}/{job.steps_denominator} motor steps per count of the feed encoder"
     else:
         yield f"  feed {helix.feed_mm:g} mm per turn of the table, to be kept: its ratio is in R"
+        if abs(100.0 * helix.feed_mm - round(100.0 * helix.feed_mm)) > 1e-9:
+            yield f"  not on the display: its knob goes by 0.01 mm, {helix.feed_mm:.2f} is another ratio"
     yield (
         f"  rounding the lead costs {helix.error_steps:.1e} steps over {helix.travel:g} mm "
         f"({helix.error_bound_steps:.1e} at most)"

@@ -9,6 +9,7 @@ from gearmath.export.beside import BARE_WATTS, ROOM, beside, heat_sink
 from gearmath.export.markdown import bullets, paragraph, table
 from gearmath.export.netlist import Netlist, netlist, supply_amperes
 from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.motion_limits import EASY_MOTOR, easy_rate, hurries
 
 _SUPPLIES = (9.0, 12.0)
 
@@ -185,6 +186,7 @@ def switches(machine: HobbingMachine) -> Iterator[str]:
             "Supply of the motor: near the highest voltage of the driver less 10 %, since motors of deep "
             "inductance lose "
             "their torque with speed; never the supply of the logic. Its minus goes to the driver only.",
+            *_hurry(machine),
             f"Torque: at {machine.max_step_rate} steps/s the motor turns at {float(rpm):.0f} rpm. What the {driven} "
             "needs is found with a cord round a pulley on the motor's shaft and a spring balance, force times radius; "
             "the torque curve of the motor, for the voltage of G2, must show at least twice that at this speed. If it "
@@ -192,6 +194,16 @@ def switches(machine: HobbingMachine) -> Iterator[str]:
             "Never plug the motor in or out under power: it destroys the driver.",
         )
     )
+
+
+def _hurry(machine: HobbingMachine) -> Iterator[str]:
+    """What is said where the step rate asks more of a step motor than such motors can do."""
+    if hurries(machine):
+        yield (
+            f"**Too fast for most step motors: {machine.max_step_rate} steps/s are more than {EASY_MOTOR} rpm.** Write "
+            f"`step_rate_hz = {easy_rate(machine)}`, or less, unless the torque curve of yours says otherwise, or take "
+            "a drive of closed loop or a servo."
+        )
 
 
 def scope(machine: HobbingMachine) -> Iterator[str]:

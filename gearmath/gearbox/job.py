@@ -205,12 +205,14 @@ def _highest_rpm(machine: HobbingMachine, ratio: Fraction) -> float:
 
 def _check_speed(machine: HobbingMachine, what: str, rpm: float, highest: float) -> None:
     if not 0.0 < rpm < float("inf"):
-        raise InputError(f"rpm = {rpm:g}: must be a positive speed")
+        raise InputError(
+            f"rpm = {rpm:g}: must be a positive speed, at most {machine.speed_key} = {machine.limits.hob_rpm:g}"
+        )
     if rpm <= highest:
         return
     limits = machine.limits
     limit = (
-        f"limits.hob_rpm = {limits.hob_rpm:g}"
+        f"{machine.speed_key} = {limits.hob_rpm:g}"
         if highest == limits.hob_rpm
         else f"limits.step_rate_hz = {limits.step_rate_hz:g}"
     )

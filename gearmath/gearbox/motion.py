@@ -16,6 +16,8 @@ from gearmath.specs.hobbing import HobbingMachine
 
 #: Turns of the hob after which the firmware gives up catching up; GM_HOPELESS_TURNS.
 HOPELESS_TURNS = 64.0
+#: Longest run-up of a hob [s], as that of a machine file.
+LONGEST_RUN_UP = 600.0
 _HEADROOM = 1.002  # of the step rate over the speed, below which nothing is overtaken
 
 
@@ -54,6 +56,8 @@ def check_run_up(machine: HobbingMachine, job: MotorMotion, rpm: float, seconds:
 
     ``seconds`` is limits.run_up_s of the machine file if not given, and then in proportion to the speed.
     """
+    if seconds is not None and not 0.0 <= seconds <= LONGEST_RUN_UP:
+        raise InputError(f"run_up = {seconds:g}: must lie between 0 and {LONGEST_RUN_UP:g} s")
     given = seconds
     if given is None and machine.limits.run_up_s is not None:
         given = machine.limits.run_up_s * rpm / machine.limits.hob_rpm

@@ -18,6 +18,8 @@ from gearmath.gearbox.helix import JobRatio
 
 Pattern = Literal["forward", "dither", "reversals"]
 LONGEST_RUN = 5000  # edges between two reversals, at most
+#: A run of so many edges takes days; their counts after the last start stay within 63 bits.
+MOST_EDGES, LAST_START = 10**12, 2**62
 FEED_EVERY = 8  # in a job of two axes, one edge in so many is one of the feed
 
 
@@ -238,7 +240,11 @@ def simulate_job(
     """The same for any ratio: above 1, negative, or of hob and feed, whose edges then come among those of the hob.
 
     ``start`` is the count of the hob before the first edge, to begin just below a boundary of the counters.
+    Raises InputError where edges or start are more than a run can have.
     """
+    for key, value, least, most in (("edges", edges, 1, MOST_EDGES), ("start", start, 0, LAST_START)):
+        if not least <= value <= most:
+            raise InputError(f"{key} = {value}: must lie between {least} and {most}")
     return _drive(run, job, job.first_remainder, kind, edges, seed, progress, record, start)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from derivations import notation as q
 from gearmath.errors import InputError
 from gearmath.gearbox.dimensions import (
+    PIN,
     Chord,
     Gear,
     OverPins,
@@ -111,6 +112,10 @@ def plan(
             lambda count: refusal(machine, _ratio(machine, count, starts, hobs, helix)[0]) is None,
         )
         raise InputError(f"{machine.name}: teeth = {teeth}: {reason}; {other}")
+    blanks = tuple(_blank(machine, teeth, starts, chosen, helix, shift, pin) for chosen in hobs)
+    if pin is not None and all(blank.over_pins is None for blank in blanks):
+        usual = ", ".join(f"{PIN * chosen.module_mm:.4g} mm ({chosen.name})" for chosen in hobs)
+        raise InputError(f"pin = {pin:g}: does not lie on the flanks of {teeth} teeth; usual are {usual}")
     return GearboxPlan(
         **job_values(machine, ratio, rpm, f"{teeth} teeth", run_up),  # type: ignore[arg-type]
         teeth=teeth,
@@ -118,7 +123,7 @@ def plan(
         hob_hand=machine.hob_hand,
         profile_shift=shift,
         helix=_helix_plan(teeth, hobs[0], helix, rounding),
-        blanks=tuple(_blank(machine, teeth, starts, chosen, helix, shift, pin) for chosen in hobs),
+        blanks=blanks,
     )
 
 

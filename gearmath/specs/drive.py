@@ -109,8 +109,10 @@ class Drive(Spec):
     def _one_motor(self) -> Drive:
         given = [self.full_steps is not None, self.microsteps is not None]
         if all(given) == (self.pulses is not None) or any(given) != all(given):
+            values = (("full_steps", self.full_steps), ("microsteps", self.microsteps), ("pulses", self.pulses))
+            said = ", ".join(f"{key} = {value}" for key, value in values if value is not None) or "none is given"
             raise ValueError(
-                "a step motor needs full_steps and microsteps, a servo needs pulses, and neither the other's"
+                f"a step motor needs full_steps and microsteps, a servo needs pulses, and neither the other's: {said}"
             )
         return self
 

@@ -111,7 +111,10 @@ class Driver(Spec):
     def _one_timing(self) -> Driver:
         times = self._times
         if self.name is None and None in times.values():
-            raise ValueError(f"the name of a driver, or all of {', '.join(times)} must be given")
+            missing = ", ".join(key for key, time in times.items() if time is None)
+            raise ValueError(
+                f"name is missing; without the name of a driver all of its times must be given, {missing} too"
+            )
         if self.name is not None:
             if self.name not in DRIVERS:
                 raise ValueError(
@@ -120,7 +123,9 @@ class Driver(Spec):
                 )
             given = [key for key, time in times.items() if time is not None]
             if given:
-                raise ValueError(f"name = {self.name!r} and {given[0]} both state times, use one of them")
+                raise ValueError(
+                    f"name = {self.name!r} and {given[0]} = {times[given[0]]} both state times, use one of them"
+                )
         return self
 
     @model_validator(mode="after")

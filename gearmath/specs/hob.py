@@ -63,12 +63,19 @@ class Hob(Spec):
     @model_validator(mode="after")
     def _one_size(self) -> Hob:
         if (self.diametral_pitch is None) == (self.module is None):
-            raise ValueError("a hob needs exactly one of diametral_pitch and module")
+            given = self.module is not None
+            raise ValueError(
+                f"module = {self.module:g} and diametral_pitch = {self.diametral_pitch:g}: exactly one is a hob's"
+                if given
+                else "a hob needs exactly one of module (0.1 to 25 mm) and diametral_pitch (1 to 254 per inch)"
+            )
         if self.depth_rule.endswith("m") != (self.module is not None):
             fitting = [rule for rule in DEPTH_RULES if rule.endswith("m") != self.depth_rule.endswith("m")]
-            raise ValueError(f"depth_rule {self.depth_rule!r} does not fit this hob, use one of {', '.join(fitting)}")
+            size = f"module = {self.module:g}" if self.module is not None else f"diametral_pitch = {self._size:g}"
+            raise ValueError(f"depth_rule = {self.depth_rule!r}: does not fit {size}, use one of {', '.join(fitting)}")
         if abs(self._size * 10_000 - self.size_tenthousandths) > 1e-6:
-            raise ValueError(f"size {self._size:g}: more than the four decimals that the display keeps")
+            key = "diametral_pitch" if self.module is None else "module"
+            raise ValueError(f"{key} = {self._size:.12g}: has more than the four decimals that the display keeps")
         if self.diameter is not None and self.diameter <= 5.0 * self.module_mm:
             raise ValueError(f"diameter = {self.diameter:g}: must be more than five modules of {self.module_mm:g} mm")
         return self

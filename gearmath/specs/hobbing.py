@@ -28,6 +28,7 @@ from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.drive import Encoder, Feed, LeadScrew, Table
 from gearmath.specs.drivers import Driver
 from gearmath.specs.hob import Hob
+from gearmath.specs.motion_limits import check_motion
 from gearmath.specs.ratio import EXACT_INCH
 from gearmath.specs.toml import Spec, find, load
 
@@ -39,7 +40,6 @@ LS7184_EDGE_RATE = 100_000
 NARROW = int(notation.steps_denominator.domain[1])
 #: Largest numerator of the counts per turn of the hob.
 MOST_TURN_COUNTS = 16_000_000
-LONGEST_RAMP = 10.0  # s
 #: Threads per inch that the firmware takes, in steps of 1/100.
 FINEST_TPI = 1000
 
@@ -55,7 +55,7 @@ def _plain(name: str) -> str:
 class Limits(Spec):
     """What the machine can do: speed of hob or spindle [1/min], rates [steps/s], acceleration [steps/s^2]."""
 
-    hob_rpm: float = Field(gt=0.0, le=20_000.0, validation_alias=AliasChoices("hob_rpm", "spindle_rpm"))
+    hob_rpm: float = Field(ge=1.0, le=20_000.0, validation_alias=AliasChoices("hob_rpm", "spindle_rpm"))
     step_rate_hz: float = Field(ge=10.0, le=1e6)
     move_rate_hz: float | None = Field(default=None, ge=10.0, le=1e6)
     """Of a jog or an index move; 2000, or the step rate where that is less, if not given."""
@@ -64,6 +64,17 @@ class Limits(Spec):
     """Time of the hob from rest to hob_rpm, or from there to rest, whichever is shorter; plans are checked with it."""
     lag_steps: int = Field(ge=1, le=30_000)
     """Steps that may wait before the gearbox trips."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_speed(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            given = [f"{key} = {data[key]}" for key in ("hob_rpm", "spindle_rpm") if key in data]
+            if len(given) > 1:
+                raise ValueError(f"{' and '.join(given)}: are one limit, use one of them")
+            if not given:
+                raise ValueError("hob_rpm is missing, which of a lathe is called spindle_rpm")
+        return data
 
 
 class HobbingMachine(Spec):
@@ -105,27 +116,28 @@ class HobbingMachine(Spec):
         self._check_hobs()
         self._check_pins()
         self._check_edges()
-        self._check_steps()
+        check_motion(self)
         return self
 
     def _check_profile(self) -> None:
         needed, other = ("lead_screw", "table") if self.profile == "lathe" else ("table", "lead_screw")
         if getattr(self, needed) is None:
-            raise ValueError(f"profile = {self.profile!r} needs the section [{needed}]")
+            raise ValueError(f"{needed}: the section [{needed}] is missing, profile = {self.profile!r} needs it")
         unfit = [other] + ["feed", "hobs"] * (self.profile == "lathe")
         for key in unfit:
             if getattr(self, key):
-                raise ValueError(f"[{key}] has no meaning with profile = {self.profile!r}")
+                raise ValueError(f"{key}: [{key}] has no meaning with profile = {self.profile!r}, take it out")
         if self.profile == "lathe" and (self.hob_starts, self.hob_hand) != (1, "right"):
-            raise ValueError("hob_starts and hob_hand have no meaning with profile = 'lathe'")
+            key, value = ("hob_starts", self.hob_starts) if self.hob_starts != 1 else ("hob_hand", repr(self.hob_hand))
+            raise ValueError(f"{key} = {value}: has no meaning with profile = 'lathe', take it out")
 
     def _check_hobs(self) -> None:
         names = [hob.name for hob in self.hobs]
         if self.profile == "hobbing" and not names:
-            raise ValueError("hobs: at least one hob must be listed")
-        for name in names:
-            if names.count(name) > 1:
-                raise ValueError(f"hob {name} stands in the list of hobs more than once")
+            raise ValueError("hobs: the list is empty, at least one [[hobs]] must be there")
+        for place, name in enumerate(names, 1):
+            if name in names[: place - 1]:
+                raise ValueError(f"hobs #{place}: hob {name} stands in the list more than once, take it out")
 
     def _check_pins(self) -> None:
         self.pins.check(self.board, self.hardware)
@@ -135,11 +147,20 @@ class HobbingMachine(Spec):
                 "and the driver's ENABLE open, or write driver.enable_active from its manual"
             )
         for key in ("feed_step", "feed_dir"):
-            if (getattr(self.pins, key) is None) != (self.feed is None):
-                raise ValueError(f"pins.{key} must be given where there is a [feed], and only there")
+            pin = getattr(self.pins, key)
+            if pin is None and self.feed is not None:
+                raise ValueError(
+                    f"pins.{key}: the key is missing; [feed] needs a pin from 0 to {self.hardware.highest_pin}"
+                )
+            if pin is not None and self.feed is None:
+                raise ValueError(
+                    f"pins.{key} = {pin}: has no meaning without [feed]; take the pin out, or write [feed]"
+                )
 
         if self.pins.reset is not None and self.pins.alarm is None:
-            raise ValueError("pins.reset has no meaning without pins.alarm")
+            raise ValueError(
+                f"pins.reset = {self.pins.reset}: has no meaning without pins.alarm; take it out, or give both"
+            )
         if self.encoder.wants_counter:
             self._check_counters()
 
@@ -175,28 +196,9 @@ class HobbingMachine(Spec):
         what = f"board {self.board}" if carried == self.hardware.highest_edge_rate else "the LS7184"
         if self.max_edge_rate > carried:
             raise ValueError(
-                f"limits.hob_rpm = {self.limits.hob_rpm:g} with {self.encoder_counts} counts a turn are "
+                f"{self.speed_key} = {self.limits.hob_rpm:g}: with {self.encoder_counts} counts a turn are "
                 f"{self.max_edge_rate} edges/s: {what} carries {carried}, which is at most "
                 f"{int(carried * 60 / self.encoder_counts)} rpm"
-            )
-
-    def _check_steps(self) -> None:
-        limits, highest = self.limits, self.driver.timing.highest_rate(self.tick_ns, self.jitter_ns)
-        driver = self.driver.name or "of the file"
-        for key in ("step_rate_hz", "move_rate_hz"):
-            rate = getattr(limits, key)
-            if rate is not None and rate > highest:
-                raise ValueError(f"limits.{key} = {rate:g}: driver {driver} on {self.board} takes at most {highest}")
-        if self.move_max_rate > limits.step_rate_hz:
-            raise ValueError(
-                f"limits.move_rate_hz = {limits.move_rate_hz:g}: must not exceed limits.step_rate_hz = "
-                f"{limits.step_rate_hz:g}"
-            )
-        ramp = self.move_max_rate / limits.acceleration_hz_per_s
-        if ramp > LONGEST_RAMP:
-            raise ValueError(
-                f"limits.acceleration_hz_per_s = {limits.acceleration_hz_per_s:g}: a move needs {ramp:.0f} s to reach "
-                f"{self.move_max_rate} steps/s, at least {math.ceil(self.move_max_rate / LONGEST_RAMP)} is needed"
             )
 
     # --- the train ------------------------------------------------------------------------------------------------
@@ -206,6 +208,11 @@ class HobbingMachine(Spec):
         drive = self.lead_screw if self.profile == "lathe" else self.table
         assert drive is not None  # _check_profile
         return drive
+
+    @property
+    def speed_key(self) -> str:
+        """The key of the highest speed, as the file has it."""
+        return "limits.spindle_rpm" if self.profile == "lathe" else "limits.hob_rpm"
 
     @property
     def encoder_counts(self) -> Fraction:

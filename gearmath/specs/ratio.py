@@ -25,12 +25,15 @@ _PITCH = re.compile(r"\s*(\d+(?:\.\d+|/\d+)?)\s*(mm|tpi|m|dp)\s*\Z")
 
 def _rational(value: object, most: int = 10_000) -> Fraction:
     """A whole number, or text like "5/2". A decimal number is refused: 0.1 is no exact ratio in binary."""
+    wanted = f'must be a whole number, or a fraction in quotes such as "5/2", between 1/1000 and {most}'
     if isinstance(value, bool) or not isinstance(value, int | str):
-        raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"')
+        raise ValueError(wanted)
     try:
         ratio = Fraction(value)
-    except (ValueError, ZeroDivisionError):
-        raise ValueError('must be a whole number, or a fraction in quotes such as "5/2"') from None
+    except ZeroDivisionError:
+        raise ValueError(f"is a division by 0: {wanted}") from None
+    except ValueError:
+        raise ValueError(wanted) from None
     if not Fraction(1, 1000) <= ratio <= most:
         raise ValueError(f"must lie between 1/1000 and {most}")
     return _small(ratio)
@@ -53,7 +56,9 @@ def pitch(value: object) -> Fraction:
     except ZeroDivisionError:
         number = Fraction(0)
     if match is None or number == 0:
-        raise ValueError('must be a pitch such as "2mm", "1.25mm", "8tpi", "23/2tpi", "1.5m" or "16dp"')
+        raise ValueError(
+            'must be a pitch such as "2mm", "1.25mm", "8tpi", "23/2tpi", "1.5m" or "16dp", between 0.01 mm and 100 mm'
+        )
     length = number if match[2] in ("mm", "m") else EXACT_INCH / number
     if match[2] in ("m", "dp"):
         length *= PI

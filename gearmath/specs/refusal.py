@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import difflib
+import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 _LIKENESS = 0.7
 #: So many characters of a value a message shows.
 _LONGEST = 100
+#: So many missing keys it names beside one that is unknown.
+_NAMED = 3
 
 _NUMBER, _WHOLE = "must be a number", "must be a whole number, without a decimal point"
 _TABLE, _LIST, _TRUTH = "must be a table of keys", "must be a list in brackets", "must be true or false"
@@ -55,15 +58,29 @@ def sentence(error: ValidationError, model: type[Spec]) -> str:
     first = (unknown or details)[0]
     loc = first["loc"]
     near = difflib.get_close_matches(str(loc[-1]), _keys(model, loc[:-1]), 1, _LIKENESS) if unknown else []
-    others = len({detail["loc"] for detail in details if detail["loc"] not in (loc, (*loc[:-1], *near))})
-    more = f" (and {others} more)" if others else ""
+    others = {detail["loc"]: detail for detail in details if detail["loc"] not in (loc, (*loc[:-1], *near))}
+    more = f" (and {len(others)} more)" if others else ""
+    # what an unknown key was meant to be, where it is not like it
+    lacking = [_dotted(place) for place, detail in others.items() if detail["type"] == "missing"]
+    if unknown and lacking and not near:
+        more = f"; {' and '.join(lacking[:_NAMED])} {'is' if len(lacking) == 1 else 'are'} missing{more}"
     if near:  # the key that is meant is missing, then, and no fault of its own
         return f"{_dotted(loc)}: no such key; did you mean {near[0]}?{more}"
     what, key = _words([detail for detail in details if detail["loc"] == loc]), _dotted(loc)
+    if first["type"] == "value_error" and loc and _names_a_key(what, _keys(model, loc)):
+        return f"{key}.{what}{more}"
     if first["type"] == "missing" and loc and isinstance(loc[-1], int):
         what, key = f"value {loc[-1] + 1} of the list is missing", _dotted(loc[:-1])
+    elif first["type"] == "missing" and _keys(model, loc):
+        what = f"the section [{key}] is missing"
     value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {_short(first['input'])}"
     return f"{key}{value}: {what}{more}" if key else f"{what}{more}"
+
+
+def _names_a_key(what: str, keys: Sequence[str]) -> bool:
+    """Whether a table's own check begins with one of its keys: "index = 6: ..."."""
+    first = re.match(r"(\w+) = ", what)
+    return first is not None and first[1] in keys
 
 
 def _words(details: Sequence[Mapping[str, Any]]) -> str:
@@ -76,6 +93,10 @@ def _words(details: Sequence[Mapping[str, Any]]) -> str:
 def _word(detail: Mapping[str, Any]) -> str:
     if detail["type"] == "value_error":
         return str(detail["ctx"]["error"])
+    if _SENTENCES.get(detail["type"]) == _LIST and isinstance(detail["input"], Mapping):
+        return f"is one table: write [[{_dotted(detail['loc'])}]] in double brackets, once for each"
+    if _SENTENCES.get(detail["type"]) == _TABLE and isinstance(detail["input"], list):
+        return f"{_TABLE}: write [{_dotted(detail['loc'])}] in single brackets, once"
     if detail["type"] == "string_too_short" and detail["ctx"]["min_length"] == 1:
         return "must not be empty"
     limits = {name: _number(value) for name, value in detail.get("ctx", {}).items()}
@@ -100,7 +121,8 @@ def _place(model: type[Spec], loc: tuple[int | str, ...]) -> tuple[int | str, ..
 
 
 def _dotted(loc: Sequence[int | str]) -> str:
-    return ".".join(_printed(str(part)) for part in loc)
+    """A key with its tables; of a list, the number of the value, the first being #1."""
+    return "".join(f" #{part + 1}" if isinstance(part, int) else f".{_printed(part)}" for part in loc).lstrip(". ")
 
 
 def _printed(key: str) -> str:

@@ -17,6 +17,9 @@ from gearmath.errors import InputError
 from gearmath.files import read_text
 from gearmath.specs.refusal import sentence
 
+#: So many characters of a line a message shows.
+_SHOWN = 80
+
 
 class Spec(BaseModel):
     """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
@@ -51,15 +54,26 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     """Check TOML text against ``model``; ``name`` is the file's name in the messages."""
     try:
         values = tomllib.loads(text)
-    except (ValueError, RecursionError) as error:  # no TOML, or numbers and nesting beyond all measure
-        raise InputError(f"{name}: is no TOML: {error}{_comma(text, str(error))}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{name}: is no TOML: {error}{_line(text, str(error))}") from error
+    except (ValueError, RecursionError) as error:
+        raise InputError(f"{name}: is no TOML: a number of thousands of digits, or lists within lists") from error
     return _checked(values, model, model.from_file, name)
 
 
-def _comma(text: str, refusal: str) -> str:
-    """What to say of a decimal comma in the line that a refusal names; empty where there is none."""
+def _line(text: str, refusal: str) -> str:
+    """What is to be said of the line that a refusal names: its key, where that stands twice, or its decimal comma."""
     line, lines = re.search(r"at line (\d+)", refusal), text.splitlines()
-    number = re.search(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$", lines[int(line[1]) - 1]) if line else None
+    if line is None or int(line[1]) > len(lines):
+        return ""
+    stands = lines[int(line[1]) - 1].strip()
+    if refusal.startswith("Cannot overwrite") and stands.startswith("[["):
+        return f"; {stands[:_SHOWN]} is a list of tables, all of which have double brackets"
+    if refusal.startswith("Cannot overwrite"):
+        return f"; the key {stands.split('=')[0].strip()!r} stands a second time there: {stands[:_SHOWN]}"
+    if refusal.startswith("Cannot declare"):
+        return f"; the section {stands[:_SHOWN]} stands a second time there"
+    number = re.search(r"=\s*([-+]?\d+,\d+)\s*(#.*)?$", stands)
     return f"; {number[1]} has a decimal comma, TOML wants a point" if number else ""
 
 
@@ -88,5 +102,7 @@ def bundled(name: str) -> Path:
 
 def find(name: str) -> Path:
     """A file by its path or, where a bare name is no file here, the bundled file of that name."""
+    if not name:
+        raise InputError("a file must be named, its name is empty")
     path = Path(name)
     return path if path.is_file() or path.name != name else bundled(name)

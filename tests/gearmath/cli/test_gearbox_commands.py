@@ -69,9 +69,31 @@ def test_plan_of_a_shifted_gear_gives_the_published_span(capsys, tmp_path):
     assert "of 5.5 mm" in out
 
 
+@pytest.mark.parametrize(
+    ("job", "said"),
+    [
+        (("hobbing_helical.toml", "--teeth", "30", "--hob", "m1", "--helix", "20.12"), ""),
+        (("hobbing_helical.toml", "--teeth", "30", "--hob", "m1", "--helix", "20.123"), "0.01 deg, 20.12"),
+        (("hobbing_default.toml", "--teeth", "30", "--hob", "m1", "--helix", "20", "--feed", "0.25"), ""),
+        (("hobbing_default.toml", "--teeth", "30", "--hob", "m1", "--helix", "20", "--feed", "0.255"), "0.01 mm, 0.2"),
+        (("lathe_example.toml", "--pitch", "1.255mm"), ""),
+        (("lathe_example.toml", "--pitch", "1.251mm"), "0.005 mm"),
+        (("lathe_example.toml", "--pitch", "11.5tpi"), ""),
+        (("lathe_example.toml", "--pitch", "11.4tpi"), "0.25 threads"),
+        (("lathe_example.toml", "--pitch", "1.5m"), ""),
+        (("lathe_example.toml", "--pitch", "16dp"), ""),
+    ],
+)
+def test_plan_says_what_the_knob_cannot_be_turned_to(capsys, job, said):
+    """GM_TPI_DETENT, GM_PITCH_DETENT, GM_HELIX_DETENT and GM_FEED_DETENT of gm_edit.c."""
+    _, out, _ = gearmath(capsys, "gearbox", "plan", *job)
+    assert ("not on the display" in out) == bool(said)
+    assert said in out
+
+
 def test_plan_says_when_the_firmware_would_refuse(capsys):
     _, out, _ = gearmath(capsys, "gearbox", "plan", "hobbing_plewes.toml", "--teeth", "4", "--hob", "m1")
-    assert "refuses this job while limits.hob_rpm is more than 594" in out  # 40 kHz / 4000 steps a turn, less 1 %
+    assert "refuses this job while limits.hob_rpm is more than 297" in out  # 20 kHz / 4000 steps a turn, less 1 %
 
 
 def test_plan_of_a_thread(capsys):
@@ -160,7 +182,7 @@ def test_long_simulation_shows_its_progress(capsys, monkeypatch):
         (("plan", "hobbing_plewes.toml", "--teeth", "ten"), ("--teeth", "ten")),
         (("plan", "hobbing_plewes.toml"), ("--teeth",)),
         (("plan", "hobbing_plewes.toml", "--teeth", "-7"), ("teeth = -7", "between 1 and 999")),
-        (("plan", "hobbing_plewes.toml", "--teeth", "10", "--rpm", "900"), ("900", "800.0 rpm", "limits.hob_rpm")),
+        (("plan", "hobbing_plewes.toml", "--teeth", "12", "--rpm", "900"), ("900", "800.0 rpm", "limits.hob_rpm")),
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--pitch", "2mm"), ("hobbing machine", "--teeth")),
         (("plan", "lathe_example.toml", "--teeth", "10"), ("lathe", "--pitch")),
         (("plan", "lathe_example.toml", "--pitch", "2inch"), ("2inch", "23/2tpi")),
@@ -171,6 +193,35 @@ def test_long_simulation_shows_its_progress(capsys, monkeypatch):
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--helix", "9", "--feed", "x"), ("feed = 'x'", "mm")),
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--helix", "9", "--hob", "m1"), ("helix = 9", "encoder")),
         (("plan", "hobbing_plewes.toml", "--teeth", "10", "--hob", "m2"), ("m2", "m1")),
+        (
+            ("plan", "hobbing_plewes.toml", "--teeth", "24", "--rpm", "nan"),
+            ("rpm = nan", "limits.hob_rpm = 800"),
+        ),
+        (("plan", "hobbing_plewes.toml", "--teeth", "24", "--run-up", "-1"), ("run_up = -1", "between 0 and 600 s")),
+        (("plan", "hobbing_plewes.toml", "--teeth", "24", "--run-up", "nan"), ("run_up = nan", "between 0 and 600 s")),
+        (
+            ("plan", "hobbing_plewes.toml", "--teeth", "24", "--hob", "m1", "--pin", "1e9"),
+            ("pin = 1e+09", "24 teeth", "1.68 mm"),
+        ),
+        (("plan", "", "--teeth", "24"), ("must be named", "empty")),
+        (
+            ("simulate", "hobbing_plewes.toml", "--teeth", "9", "--pattern", "forward", "--edges", "9" * 23),
+            ("edges = 999", "between 1 and 1000000000000"),
+        ),
+        (
+            (
+                "simulate",
+                "lathe_example.toml",
+                "--pitch",
+                "1mm",
+                "--pattern",
+                "dither",
+                "--edges=9",
+                "--start",
+                "9" * 20,
+            ),
+            ("start = 999", "between 0 and 4611686018427387904"),
+        ),
         (("simulate", "hobbing_plewes.toml", "--teeth", "10", "--pattern", "forward", "--edges", "0"), ("--edges",)),
         (
             ("simulate", "hobbing_plewes.toml", "--teeth", "10", "--pattern", "back", "--edges", "9"),
@@ -194,9 +245,9 @@ PLEWES = bundled("hobbing_plewes.toml").read_text("utf-8")
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 40000", "tb6560", "at most 3225")),
-        ("[pins]", "[pins]\nindex = 13", ("pins: index = 13", "already that of step_out")),
-        ('name = "unsure"', 'name = "nema"', ("driver: name = 'nema'", "known are gecko201")),
+        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 20000", "tb6560", "at most 3225")),
+        ("[pins]", "[pins]\nindex = 13", ("pins.index = 13", "already that of step_out")),
+        ('name = "unsure"', 'name = "nema"', ("driver.name = 'nema'", "known are gecko201")),
         ('decoder = "ls7184_x4"\n', "", ("encoder.decoder", "missing")),
         ('Machinist 15-4"', 'Machinist \\"15-4\\""', ("name = ", "plain letters")),
         ("lines = 1024", "lines = 10001", ("encoder.lines = 10001", "at most 10000 lines")),

@@ -207,19 +207,19 @@ def test_cut_with_everything_that_a_hob_may_have_says_so_in_json_and_text(capsys
     ("given", "instead", "words"),
     [
         ("protuberance = 0.05", "protuberance = 0.001", "protuberance = 0.001: must be at least 0.0038 modules"),
-        ("protuberance = 0.05", "protuberance = -1.0", "hobs.0.protuberance = -1.0: must be at least 0"),
+        ("protuberance = 0.05", "protuberance = -1.0", "hobs #1.protuberance = -1.0: must be at least 0"),
         ("protuberance = 0.05", "protuberance_angle = 9.0", "protuberance_angle has no meaning without protuberance"),
         ("gash_lead = 2000.0", "gash_lead = 20.0", "gash_lead = 20: must be at least 5 diameters, 250 mm"),
-        ("gash_lead = 2000.0", "gash_lead = nan", "hobs.0.gash_lead = nan"),
+        ("gash_lead = 2000.0", "gash_lead = nan", "hobs #1.gash_lead = nan"),
         ("gash_lead = 2000.0", "protuberance_angle = 19.0", "protuberance_angle = 19: must be at most 18 degrees"),
-        ("topping = true", "topping = 1", "hobs.0.topping = 1: must be true or false"),
+        ("topping = true", "topping = 1", "hobs #1.topping = 1: must be true or false"),
     ],
 )
 def test_hob_that_cannot_be_is_refused_by_file_and_key(capsys, tmp_path, given, instead, words):
     path = with_hob(tmp_path, given, instead)
     status, out, err = gearmath(capsys, "gearbox", "cut", str(path), "--teeth", "24")
     assert (status, out) == (2, "")
-    assert "machine.toml: hobs.0" in err
+    assert "machine.toml: hobs #1" in err
     assert words in err
     assert len(err.strip().splitlines()) == 1
 

@@ -61,7 +61,7 @@ def test_cnc_folder_is_written_and_replaced(tmp_path: Path) -> None:
         ),
         (
             ["export", "teensy", "{foreign}/wrong.toml", "-o", "{foreign}/x"],
-            "wrong.toml: pins: knob_b = 2: the pin is already",
+            "wrong.toml: pins.knob_b = 2: the pin is already",
         ),
         (["export", "cnc", "-o", "{foreign}"], "holds mine.txt"),
         (["export", "cnc"], "Missing option"),

@@ -15,6 +15,9 @@ from gearmath.export.markdown import escaped
 from gearmath.export.netlist import netlist
 from gearmath.export.teensy import teensy_files
 from gearmath.export.wiring import wiring_svg
+from gearmath.gearbox.train import plan
+from gearmath.specs.drive import Encoder, Feed
+from gearmath.specs.drivers import Driver
 from gearmath.specs.hobbing import HobbingMachine, Limits, load_hobbing_machine
 from gearmath.specs.toml import bundled
 
@@ -34,7 +37,7 @@ def machine(name: str) -> HobbingMachine:
 
 def screen() -> str:
     folder = resources.files("gearmath") / "export" / "firmware"
-    return "".join((folder / name).read_text("utf-8") for name in ("gm_screen.c", "gm_draw.c", "gm_ui.c"))
+    return "".join((folder / name).read_text("utf-8") for name in ("gm_screen.c", "gm_draw.c", "gm_ui.c", "gm_gear.c"))
 
 
 def test_every_file_of_the_folder_is_explained() -> None:
@@ -55,9 +58,17 @@ def test_pin_table_is_that_of_the_machine(name: str) -> None:
 def test_every_label_and_page_that_is_explained_exists_on_the_display(name: str) -> None:
     text = guide(machine(name), "gearbox")
     explained = re.findall(r"`([^`]+)`", text[text.index("## Commissioning") :])
-    for label in explained:
+    for label in (" ".join(words.split()) for words in explained):
         key = label.split(" = ")[0]  # of the machine file
-        known = key in {*Limits.model_fields, "invert_direction"} or label == "gearmath gearbox plan"
+        keys = {
+            *Limits.model_fields,
+            *Driver.model_fields,
+            *Encoder.model_fields,
+            *Feed.model_fields,
+            "[encoder]",
+            "[feed]",
+        }
+        known = key in keys or label == "gearmath gearbox plan"
         assert known or label in screen(), label
 
 
@@ -211,3 +222,46 @@ def test_index_of_an_encoder_behind_a_belt_counts_turns_of_the_encoder() -> None
     assert counted in " ".join(guide(belt, "gearbox").split())
     assert "must count every turn of the hob." in " ".join(guide(straight, "gearbox").split())
     assert "| `Checked` | turns of the encoder in which" in guide(belt, "gearbox")
+
+
+def test_full_rate_of_the_motor_is_reached_by_a_job_that_the_machine_carries() -> None:
+    """800 rpm and 11 teeth: 800/60 x 16000/11 = 19393.9 steps/s; 10 teeth would be more than 20000/1.01.
+
+    A slip of 4 full steps is 16 of 16000 steps a turn."""
+    text = chapter(guide(machine("hobbing_default"), "gearbox"), "Commissioning")
+    assert "job of 11 teeth" in text
+    assert "800 rpm: the motor makes 19394 steps/s then, of `step_rate_hz = 20000`" in text
+    assert "0.36 degrees of the table, 0.31 mm at a radius of 50 mm" in text
+    assert "firmware takes 11 teeth and more" in chapter(guide(machine("hobbing_default"), "gearbox"), "The first cut")
+    assert "for 6 teeth `hob_rpm = 445`" in chapter(guide(machine("hobbing_default"), "gearbox"), "The first cut")
+    assert plan(machine("hobbing_default"), 11).carried_at_every_speed
+    assert not plan(machine("hobbing_default"), 10).carried_at_every_speed
+
+
+def test_full_rate_of_a_lathe_turns_screw_and_spindle_alike() -> None:
+    """32000/4800/1.01 turns a second are 396 rpm, 31680 steps/s; a slow spindle takes two starts."""
+    given = machine("lathe_example")
+    text = chapter(guide(given, "gearbox"), "Commissioning")
+    assert "3.175 mm or 8 per inch, 1 start." in text
+    assert "up to 396 rpm: the motor makes 31680 steps/s then" in text
+    slow = given.model_copy(update={"limits": given.limits.model_copy(update={"hob_rpm": 200.0})})
+    assert "2 starts" in chapter(guide(slow, "gearbox"), "Commissioning")
+    assert "up to 198 rpm: the motor makes 31680 steps/s then" in chapter(guide(slow, "gearbox"), "Commissioning")
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_no_bundled_machine_hurries_its_step_motor_and_one_that_does_is_told(name: str) -> None:
+    given = machine(name)
+    assert given.limits.step_rate_hz * 60 / float(given.drive.pulses_per_turn) <= 1500
+    assert "Too fast for most step motors" not in guide(given, "gearbox")
+    fast = given.limits.model_copy(update={"step_rate_hz": given.limits.step_rate_hz * 1.3})
+    told = " ".join(guide(given.model_copy(update={"limits": fast}), "gearbox").split())
+    assert f"Write `step_rate_hz = {25 * given.drive.pulses_per_turn}`" in told
+
+
+def test_direction_of_the_feed_says_which_word_to_write_instead() -> None:
+    text = chapter(guide(machine("hobbing_helical"), "gearbox"), "Commissioning")
+    assert 'If it falls by 10 mm, write `counts_up = "conventional"`' in text
+    given = machine("hobbing_helical")
+    turned = given.model_copy(update={"feed": given.feed.model_copy(update={"counts_up": "conventional"})})
+    assert 'If it falls by 10 mm, write `counts_up = "climb"`' in chapter(guide(turned, "gearbox"), "Commissioning")

@@ -68,7 +68,7 @@ def test_gauge_line_above_the_b_axis_at_z_zero_is_a_negative_height():
         ("gauge_line_height = 350.0", "gauge_line_height = nan", r"gauge_line_height = nan: must be a finite number"),
         ("gauge_line_height = 350.0", "", r"gauge_line_height: the key is missing"),
         ("[-10.0, 100.0]", "[100.0, -10.0]", r"axes.B.travel = .*100.0, -10.0.: the first value must be less"),
-        ("[-10.0, 100.0]", '["-10", 100.0]', r"axes.B.travel.0 = '-10': must be a number"),
+        ("[-10.0, 100.0]", '["-10", 100.0]', r"axes.B.travel #1 = '-10': must be a number"),
         ("[-10.0, 100.0]", "[-10.0]", r"axes.B.travel: value 2 of the list is missing"),
         ("modulo = true", "modulo = false", r"axes.A: travel belongs to an axis with modulo = false"),
         ("modulo = true", "modulo = true\ntravel = [0.0, 90.0]", r"axes.A: travel belongs to an axis with modulo"),
@@ -80,7 +80,7 @@ def test_gauge_line_above_the_b_axis_at_z_zero_is_a_negative_height():
             "pivot_offset = [0.0, 0.0]",
             r"pivot_offset: value 3 of the list is missing",
         ),
-        ("[20.0, 3000.0]", "[-20.0, 3000.0]", r"spindle_speed_rpm.0 = -20.0: must be greater than 0"),
+        ("[20.0, 3000.0]", "[-20.0, 3000.0]", r"spindle_speed_rpm #1 = -20.0: must be greater than 0"),
         ('"G54"', '"G53"', r"work_offset = 'G53': must be 'G54', 'G55', 'G56' or 'G57'"),
         (
             "increments_per_mm = 100000",

@@ -165,7 +165,7 @@ def test_every_length_and_no_other_number_is_taken_as_inches():
         (
             "radial_distance = 2.80104946",
             "motion.sliding_base = [0.1, 50.0]\nradial_distance = 2.80104946",
-            "pinion.convex.motion.sliding_base.1 = 50.0: must be at most 39.3701",
+            "pinion.convex.motion.sliding_base #2 = 50.0: must be at most 39.3701",
         ),
         (
             "blade_point_radius = 2.96562137806",
@@ -175,7 +175,7 @@ def test_every_length_and_no_other_number_is_taken_as_inches():
         (
             "blade_profile_height = 0.5",
             "blade_profile_height = 0.5\nblade_spheric_radius = 0.7",
-            "pinion.concave: blade_spheric_radius = 0.7: must be at least 1.0 in size",
+            "pinion.concave.blade_spheric_radius = 0.7: must be at least 1.0 in size",
         ),
         ('unit = "inch"', 'unit = "cm"', "unit = 'cm': must be 'mm' or 'inch'"),
         ('unit = "inch"', "unit = 25.4", "unit = 25.4: must be 'mm' or 'inch'"),

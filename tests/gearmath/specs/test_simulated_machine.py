@@ -78,7 +78,7 @@ def test_clamping_drift_and_averaging_in_mm():
         (
             "[probe]",
             '[[axes.screws]]\naxis = "A"\nlead = 5.0\namplitude_um = 1.0\n[probe]',
-            "axes.screws.0.axis = 'A': must be 'X', 'Y' or 'Z'",
+            "axes.screws #1.axis = 'A': must be 'X', 'Y' or 'Z'",
         ),
     ],
 )

@@ -56,7 +56,7 @@ def test_good_file_becomes_the_model(tmp_path: Path) -> None:
         (("teeth = 12", "teeth = 1000"), ["teeth = 1000", "999"]),
         (("teeth = 12", "teeth = 12.5"), ["teeth = 12.5", "whole number"]),
         (("[1.0, 2.5]", "[1, 2, 3, 4]"), ["heights has 4 entries, at most 3"]),
-        (("[1.0, 2.5]", "[1.0, nan]"), ["heights.1 = nan", "finite"]),
+        (("[1.0, 2.5]", "[1.0, nan]"), ["heights #2 = nan", "finite"]),
         (("[blade]\nangle_deg = 20.0\n", ""), ["blade", "missing"]),
         (("[blade]", "[blade"), ["is no TOML", "line 3"]),
         (("teeth = 12", "teeth = 12\nteeth = 13"), ["is no TOML", "line 2"]),
@@ -99,7 +99,10 @@ def test_models_cannot_be_changed_afterwards() -> None:
         (("angle_deg = 20.0", "angel_deg = 20.0"), r"blade\.angel_deg: no such key; did you mean angle_deg\?$"),
         (("[blade]", "[balde]"), r"balde: no such key; did you mean blade\?$"),
         (("angle_deg = 20.0", "angle_dag = 20.0\nside = 3"), r"blade\.angle_dag: .* angle_deg\? \(and 1 more\)$"),
-        (("angle_deg = 20.0", "width = 20.0"), r"blade\.width = 20\.0: no such key is known here \(and 1 more\)$"),
+        (
+            ("angle_deg = 20.0", "width = 20.0"),
+            r"blade\.width = 20\.0: no such key .*; blade\.angle_deg is missing \(and 1 more\)$",
+        ),
     ],
 )
 def test_misspelt_key_is_named_before_the_key_that_is_missing_for_it(change: tuple[str, str], sentence: str) -> None:
@@ -113,7 +116,7 @@ class Shop(Spec):
 
 
 def test_misspelt_key_is_sought_among_the_keys_of_its_own_table() -> None:
-    with pytest.raises(InputError, match=r"^shop\.toml: jobs\.0\.teetj: no such key; did you mean teeth\?"):
+    with pytest.raises(InputError, match=r"^shop\.toml: jobs #1\.teetj: no such key; did you mean teeth\?"):
         parse("[[jobs]]\nteetj = 1\n", Shop, "shop.toml")
     with pytest.raises(InputError, match=r"^shop\.toml: spare\.teetj = 1: no such key is known here"):
         parse("jobs = []\n[spare]\nteetj = 1\n", Shop, "shop.toml")
