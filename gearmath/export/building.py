@@ -200,9 +200,10 @@ def _hurry(machine: HobbingMachine) -> Iterator[str]:
     """What is said where the step rate asks more of a step motor than such motors can do."""
     if hurries(machine):
         yield (
-            f"**Too fast for most step motors: {machine.max_step_rate} steps/s are more than {EASY_MOTOR} rpm.** Write "
-            f"`step_rate_hz = {easy_rate(machine)}`, or less, unless the torque curve of yours says otherwise, or take "
-            "a drive of closed loop or a servo."
+            f"**A step motor has little torque above {EASY_MOTOR} rpm, which are {easy_rate(machine)} of the "
+            f"{machine.max_step_rate} steps/s of this file.** Write `step_rate_hz = {easy_rate(machine)}` unless the "
+            "torque curve of the motor says more, or take a drive of closed loop or a servo; `gearmath gearbox plan` "
+            "gives the speed of the motor in a job."
         )
 
 

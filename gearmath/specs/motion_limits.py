@@ -1,4 +1,4 @@
-"""Whether the limits of a gearbox machine fit its driver, its motor, each other and the work that it is made for."""
+"""Whether the limits of a gearbox machine fit its driver, each other and the work that it is made for."""
 
 from __future__ import annotations
 
@@ -13,11 +13,10 @@ if TYPE_CHECKING:
 TRIAL_TEETH = 24
 #: Part of the highest speed at which the motor must follow that work at the least.
 TRIAL_SPEED = Fraction(1, 10)
-#: Speed up to which a step motor without an encoder has torque for a cut; what such a motor and what
-#: any other never exceeds [1/min].
-EASY_MOTOR, FASTEST_STEPPER, FASTEST_MOTOR = 1500, 3000, 6000
-#: Longest time to the speed of a move, and to the step rate [s].
-LONGEST_RAMP, LONGEST_RUN_UP = 10.0, 60.0
+#: Speed up to which a step motor without an encoder has torque for a cut, as a rule of thumb [1/min].
+EASY_MOTOR = 1500
+#: Longest time to the speed of a move, and to the step rate [s]; the latter is that of limits.run_up_s.
+LONGEST_RAMP, LONGEST_RUN_UP = 10.0, 600.0
 
 
 def motor_rpm(machine: HobbingMachine, steps_per_s: float) -> float:
@@ -44,7 +43,6 @@ def check_motion(machine: HobbingMachine) -> None:
     """Raises ValueError with key, value, limit and what to do."""
     _check_driver(machine)
     _check_work(machine)
-    _check_motor(machine)
     _check_ramps(machine)
     _check_lag(machine)
     _check_play(machine)
@@ -80,20 +78,6 @@ def _check_work(machine: HobbingMachine) -> None:
             f"limits.step_rate_hz = {limits.step_rate_hz:g}: {work} needs {needed} steps/s at {rpm:g} rpm, a tenth of "
             f"{machine.speed_key}; write at least {needed} if driver and motor carry it, or take fewer steps per turn "
             f"of the motor or a lower {machine.speed_key}"
-        )
-
-
-def _check_motor(machine: HobbingMachine) -> None:
-    rate = machine.limits.step_rate_hz
-    rpm, (most, what) = motor_rpm(machine, rate), (FASTEST_MOTOR, "such motor")
-    if _plain(machine):
-        most, what = FASTEST_STEPPER, "step motor"
-    if rpm > most:
-        pulses = machine.drive.pulses_per_turn
-        raise ValueError(
-            f"limits.step_rate_hz = {rate:g}: with {pulses} steps per turn of the motor that is {rpm:.0f} rpm, no "
-            f"{what} turns faster than {most}; write at most {int(most * pulses / 60)}, or the "
-            "microsteps that the driver is really set to"
         )
 
 

@@ -93,7 +93,7 @@ def test_plan_says_what_the_knob_cannot_be_turned_to(capsys, job, said):
 
 def test_plan_says_when_the_firmware_would_refuse(capsys):
     _, out, _ = gearmath(capsys, "gearbox", "plan", "hobbing_plewes.toml", "--teeth", "4", "--hob", "m1")
-    assert "refuses this job while limits.hob_rpm is more than 297" in out  # 20 kHz / 4000 steps a turn, less 1 %
+    assert "refuses this job while limits.hob_rpm is more than 594" in out  # 40 kHz / 4000 steps a turn, less 1 %
 
 
 def test_plan_of_a_thread(capsys):
@@ -245,7 +245,7 @@ PLEWES = bundled("hobbing_plewes.toml").read_text("utf-8")
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 20000", "tb6560", "at most 3225")),
+        ('name = "unsure"', 'name = "tb6560"', ("limits.step_rate_hz = 40000", "tb6560", "at most 3225")),
         ("[pins]", "[pins]\nindex = 13", ("pins.index = 13", "already that of step_out")),
         ('name = "unsure"', 'name = "nema"', ("driver.name = 'nema'", "known are gecko201")),
         ('decoder = "ls7184_x4"\n', "", ("encoder.decoder", "missing")),

@@ -225,38 +225,44 @@ def test_index_of_an_encoder_behind_a_belt_counts_turns_of_the_encoder() -> None
 
 
 def test_full_rate_of_the_motor_is_reached_by_a_job_that_the_machine_carries() -> None:
-    """800 rpm and 11 teeth: 800/60 x 16000/11 = 19393.9 steps/s; 10 teeth would be more than 20000/1.01.
+    """800 rpm and 6 teeth: 800/60 x 16000/6 = 35555.6 steps/s; 5 teeth would be more than 40000/1.01.
 
     A slip of 4 full steps is 16 of 16000 steps a turn."""
-    text = chapter(guide(machine("hobbing_default"), "gearbox"), "Commissioning")
-    assert "job of 11 teeth" in text
-    assert "800 rpm: the motor makes 19394 steps/s then, of `step_rate_hz = 20000`" in text
+    given = machine("hobbing_default")
+    text = chapter(guide(given, "gearbox"), "Commissioning")
+    assert "job of 6 teeth" in text
+    assert "800 rpm: the motor makes 35556 steps/s then, of `step_rate_hz = 40000`" in text
     assert "0.36 degrees of the table, 0.31 mm at a radius of 50 mm" in text
-    assert "firmware takes 11 teeth and more" in chapter(guide(machine("hobbing_default"), "gearbox"), "The first cut")
-    assert "for 6 teeth `hob_rpm = 445`" in chapter(guide(machine("hobbing_default"), "gearbox"), "The first cut")
-    assert plan(machine("hobbing_default"), 11).carried_at_every_speed
-    assert not plan(machine("hobbing_default"), 10).carried_at_every_speed
+    slow = given.model_copy(update={"limits": given.limits.model_copy(update={"step_rate_hz": 20000.0})})
+    assert "firmware takes 11 teeth and more" in chapter(guide(slow, "gearbox"), "The first cut")
+    assert "for 6 teeth `hob_rpm = 445`" in chapter(guide(slow, "gearbox"), "The first cut")
+    assert plan(slow, 11).carried_at_every_speed
+    assert not plan(slow, 10).carried_at_every_speed
 
 
 def test_full_rate_of_a_lathe_turns_screw_and_spindle_alike() -> None:
-    """32000/4800/1.01 turns a second are 396 rpm, 31680 steps/s; a slow spindle takes two starts."""
+    """80000/4800/1.01 turns a second are 990 rpm, 79200 steps/s; a slow spindle takes two starts or more."""
     given = machine("lathe_example")
     text = chapter(guide(given, "gearbox"), "Commissioning")
     assert "3.175 mm or 8 per inch, 1 start." in text
-    assert "up to 396 rpm: the motor makes 31680 steps/s then" in text
-    slow = given.model_copy(update={"limits": given.limits.model_copy(update={"hob_rpm": 200.0})})
+    assert "up to 990 rpm: the motor makes 79200 steps/s then" in text
+    slow = given.model_copy(update={"limits": given.limits.model_copy(update={"hob_rpm": 500.0})})
     assert "2 starts" in chapter(guide(slow, "gearbox"), "Commissioning")
-    assert "up to 198 rpm: the motor makes 31680 steps/s then" in chapter(guide(slow, "gearbox"), "Commissioning")
+    assert "up to 495 rpm: the motor makes 79200 steps/s then" in chapter(guide(slow, "gearbox"), "Commissioning")
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_no_bundled_machine_hurries_its_step_motor_and_one_that_does_is_told(name: str) -> None:
+def test_more_speed_than_a_step_motor_has_torque_at_is_told(name: str) -> None:
     given = machine(name)
-    assert given.limits.step_rate_hz * 60 / float(given.drive.pulses_per_turn) <= 1500
-    assert "Too fast for most step motors" not in guide(given, "gearbox")
-    fast = given.limits.model_copy(update={"step_rate_hz": given.limits.step_rate_hz * 1.3})
-    told = " ".join(guide(given.model_copy(update={"limits": fast}), "gearbox").split())
-    assert f"Write `step_rate_hz = {25 * given.drive.pulses_per_turn}`" in told
+    fast, slow = (
+        given.model_copy(update={"limits": given.limits.model_copy(update={"step_rate_hz": rpm * steps / 60})})
+        for steps in (float(given.drive.pulses_per_turn),)
+        for rpm in (1600, 1500)
+    )
+    assert "little torque above 1500 rpm" not in guide(slow, "gearbox")
+    told = " ".join(guide(fast, "gearbox").split())
+    assert "little torque above 1500 rpm" in told
+    assert f"`step_rate_hz = {25 * given.drive.pulses_per_turn}`" in told
 
 
 def test_direction_of_the_feed_says_which_word_to_write_instead() -> None:

@@ -94,7 +94,7 @@ def firmware(name: str, **changes: str) -> tuple[HobbingMachine, Firmware]:
 
 @pytest.fixture(scope="module")
 def helical() -> tuple[HobbingMachine, Firmware]:
-    return firmware("hobbing_helical.toml", step_rate_hz="40000.0")  # enough for six teeth
+    return firmware("hobbing_helical.toml")
 
 
 @pytest.fixture(scope="module")
@@ -196,7 +196,7 @@ TRAINS = {
 @pytest.fixture(scope="module", params=list(TRAINS))
 def train(request) -> tuple[HobbingMachine, Firmware]:
     changes, counts, steps = TRAINS[request.param]
-    machine, make = firmware("hobbing_plewes.toml", step_rate_hz="40000.0", hob_rpm="300.0", **changes)
+    machine, make = firmware("hobbing_plewes.toml", step_rate_hz="50000.0", hob_rpm="300.0", **changes)
     assert (machine.encoder_counts, machine.motor_steps) == (counts, steps)
     return machine, make
 

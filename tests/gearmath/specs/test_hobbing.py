@@ -66,8 +66,7 @@ def test_second_bundled_machine_has_the_metric_hobs_of_the_second_example():
     ],
 )
 def test_drive_trains_of_the_source_text(old, new, counts, steps):
-    slow = PLEWES.replace("step_rate_hz = 20000.0", "step_rate_hz = 10000.0")  # 3000 rpm of 200 steps a turn
-    machine = changed(slow if new == "microsteps = 1" else PLEWES, old, new)
+    machine = changed(PLEWES, old, new)
     assert (machine.encoder_counts, machine.motor_steps) == (counts, steps)
 
 
@@ -90,7 +89,7 @@ def test_numbers_for_the_firmware():
     assert (machine.tick_ns, machine.timing_ticks) == (5000, (2, 2, 2, 2))
     assert (machine.step_active_low, machine.dir_active_low, machine.enable_active_low) == (False, False, False)
     assert machine.max_edge_rate == 54_614  # 800/60 x 4096 = 54613.3
-    assert (machine.max_step_rate, machine.move_max_rate) == (20_000, 2000)
+    assert (machine.max_step_rate, machine.move_max_rate) == (40_000, 2000)
     faster = changed(PLEWES, '"teensy32"', '"teensy41"')
     assert (faster.tick_ns, faster.timing_ticks) == (2000, (5, 5, 5, 5))
 
@@ -137,8 +136,8 @@ BAD = [
     (PLEWES, '"2.25m"', '"2m"', ("hobs #10.depth_rule", "2m", "2.157/P")),
     (PLEWES, "= 36.0", "= 32.0", ("32dp", "more than once")),
     (PLEWES, "hob_rpm = 800.0", "hob_rpm = -1.0", ("limits.hob_rpm", "-1", "0")),
-    (PLEWES, "step_rate_hz = 20000.0", "step_rate_hz = 50001.0", ("step_rate_hz = 50001", "unsure", "at most 50000")),
-    (PLEWES, 'name = "unsure"', 'name = "tb6560"', ("step_rate_hz = 20000", "tb6560", "at most 3225")),
+    (PLEWES, "step_rate_hz = 40000.0", "step_rate_hz = 50001.0", ("step_rate_hz = 50001", "unsure", "at most 50000")),
+    (PLEWES, 'name = "unsure"', 'name = "tb6560"', ("step_rate_hz = 40000", "tb6560", "at most 3225")),
     (PLEWES, "acceleration_hz_per_s = 8000.0", "acceleration_hz_per_s = 199.0", ("199", "10 s", "at least 200")),
     (PLEWES, "acceleration_hz_per_s = 8000.0", "", ("limits.acceleration_hz_per_s", "missing")),
     (PLEWES, "lag_steps = 100", "lag_steps = 0", ("limits.lag_steps", "0", "1")),

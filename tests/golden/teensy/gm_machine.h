@@ -57,7 +57,7 @@ typedef struct {
 /* --- limits */
 #define GM_MAX_LAG 100 /* steps that may wait */
 #define GM_MAX_EDGE_RATE 54614 /* edges/s at the highest speed of the hob */
-#define GM_MAX_STEP_RATE 20000 /* steps/s while the motor follows, at most */
+#define GM_MAX_STEP_RATE 40000 /* steps/s while the motor follows, at most */
 #define GM_ACCELERATION 8000 /* steps/s^2 while the motor follows */
 #define GM_MOVE_MAX_RATE 2000 /* steps/s of a jog or an index move */
 #define GM_MOVE_ACCELERATION 8000 /* steps/s^2 of a jog or an index move */

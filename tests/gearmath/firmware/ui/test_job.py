@@ -33,7 +33,7 @@ def plewes(firmware):
 
 @pytest.fixture(scope="session")
 def with_feed(firmware):
-    return firmware("hobbing_helical", GM_MAX_STEP_RATE=40_000)  # enough for six teeth
+    return firmware("hobbing_helical")
 
 
 @pytest.fixture(scope="session")
@@ -76,9 +76,9 @@ def test_spur_gears_have_the_exact_ratio_in_lowest_terms(firmware, make_job, new
     for teeth in range(1, 1000):
         refusal, job, rpm = make_job(library, new_settings(teeth=teeth, starts=starts))
         ratio = Fraction(16000 * starts, 4096 * teeth)
-        if abs(ratio) * 54614 * 101 // 1 > 2_000_000:  # 800 rpm are 54613.3 edges/s, rounded up; 1 % above it trips
+        if abs(ratio) * 54614 * 101 // 1 > 4_000_000:  # 800 rpm are 54613.3 edges/s, rounded up; 1 % above it trips
             assert refusal == FAST
-            assert rpm == 20000 / abs(ratio) * 60 / Fraction(101, 100) // 4096  # the trip is one in a hundred above
+            assert rpm == 40000 / abs(ratio) * 60 / Fraction(101, 100) // 4096  # the trip is one in a hundred above
         else:
             assert (refusal, job[0], ratios(job)) == (0, ratio.denominator, (ratio, 0))
             assert rpm == 800
@@ -192,7 +192,7 @@ def test_metric_and_inch_threads_are_exact(firmware, make_job, new_settings):
         refusal, job, rpm = make_job(library, wanted)
         assert (refusal, ratios(job)) == (0, ((-1 if left else 1) * mm * starts * per_mm / 4000, 0))
         assert rpm == min(
-            1000, 32000 / (mm * starts * per_mm) * 60 / Fraction(101, 100) // 1
+            1000, 80000 / (mm * starts * per_mm) * 60 / Fraction(101, 100) // 1
         )  # a coarse thread is cut slowly
 
 

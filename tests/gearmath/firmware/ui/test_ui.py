@@ -186,7 +186,7 @@ def test_a_job_too_fast_for_the_driver_is_refused_with_the_limit_that_would_do(p
     shows(p, "Hob starts, right  2", "Steps            125", "Edges             96", "too many steps/s")
     p.short()
     p.short()
-    shows(p, "  6 teeth      32 DP", "REFUSED", "too many steps/s", "Set limit    222 rpm")
+    shows(p, "  6 teeth      32 DP", "REFUSED", "too many steps/s", "Set limit    445 rpm")
     p.knob(1)
     assert p.short() == 0
     assert p.mode == IDLE
@@ -345,7 +345,7 @@ def test_one_turn_of_the_hob_names_the_mistake(panel, counts, verdict):
 
 
 def test_a_fault_takes_the_screen_and_without_the_output_the_operator_must_stop_the_hob(panel):
-    p = panel("hobbing_plewes", GM_MAX_STEP_RATE=40_000)
+    p = panel("hobbing_plewes")
     start(p, -18, 0, 0, 0)  # 6 teeth
     p.edges(400, ticks=3)  # 67 kHz, for 800 rpm are 55 kHz
     shows(p, "FAULT hob too fast", "Hob max      800 rpm", "YOU MUST STOP HOB!", "Follows till it ends")
@@ -362,7 +362,7 @@ def test_a_fault_takes_the_screen_and_without_the_output_the_operator_must_stop_
 
 
 def test_a_table_that_cannot_follow_is_a_fault(panel):
-    p = panel("hobbing_plewes", GM_MAX_LAG=2, GM_MAX_STEP_RATE=40_000)
+    p = panel("hobbing_plewes", GM_MAX_LAG=2)
     start(p, -18, 0, 0, 0)
     p.edges(30, ticks=1)
     shows(p, "FAULT table lags", "Run the hob slower", "YOU MUST STOP HOB!", "Hold: acknowledge")
