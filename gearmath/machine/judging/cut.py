@@ -20,9 +20,9 @@ from gearmath.machine.milling.axis_errors import roll_position
 from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.milling.surfaces import DEFAULT_COLUMNS, surface_states
 from gearmath.machine.milling.surfaces import DEFAULT_TOLERANCE as REPORTED
-from gearmath.machine.planning.hobbing import index_ratio, spindle_phase
+from gearmath.machine.planning.hobbing import index_ratio
 from gearmath.machine.planning.passes import tooth_angles
-from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions
+from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, spindle_phase
 from gearmath.machine.planning.rounding import FROM_AXIS, FROM_CUTTER, control_share
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.milling_machine import MillingMachine

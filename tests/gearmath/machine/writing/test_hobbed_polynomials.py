@@ -18,7 +18,7 @@ from gearmath.machine.judging.trajectory import trajectory
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
-from gearmath.machine.planning.hobbing import six_axes, spindle_phase
+from gearmath.machine.planning.path import six_axes, spindle_phase
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
