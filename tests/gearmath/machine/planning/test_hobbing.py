@@ -38,6 +38,7 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES, Motion, S
 from gearmath.specs.design import DesignData
 from gearmath.specs.simulated_machine import AxisErrors, Harmonic, Mounting, SimulatedMachine, WorkAxis
 from gearmath.specs.toml import bundled, checked
+from tests.gearmath.machine.milling.flank_borders import left_at_borders
 
 COARSE = 5e-4  # mm
 MOTION = Motion(sliding_base=(0.9, -0.5), modified_roll=(0.04, -0.2), radial_distance=(0.3,))
@@ -216,16 +217,8 @@ def test_border_of_the_flank_to_the_fillet_keeps_the_tolerance_and_needs_it(
         gear_set = changed(hobbed, member, **both(hobbed.member(member), toprem_angle=14.0, toprem_height=1.0))
     spec = gear_set.member(member)
     path = execute(written(member, gear_set=gear_set, tolerance=tolerance), "HOB.MPF")
-    (run,) = runs_of(path, spec, member, vertical, None, None, SHARP_EDGE)
-    angles = 2 * math.pi * np.arange(0, spec.teeth, 1 + spec.teeth // 20) / spec.teeth
-    highest = []
-    for flank in FLANKS:
-        part = getattr(tooth_space(spec, member, 9), flank)
-        rows = [0, 16, part.section.index("edge") - 1]  # face cone, lower end of the main section, of the Toprem
-        lines = (part.point[rows].reshape(-1, 3), part.normal[rows].reshape(-1, 3))
-        point, normal = (np.concatenate([turned(values, angle) for angle in angles]) for values in lines)
-        highest.append(expose([run], vertical, None, point, normal, np.full(len(point), -1.0)).distance.max())
-    assert 0.7 * tolerance <= max(highest) <= tolerance
+    highest = left_at_borders(path, spec, member, vertical).max()
+    assert 0.7 * tolerance <= highest <= tolerance
 
 
 def border_of(flank):
