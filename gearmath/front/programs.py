@@ -131,16 +131,33 @@ class Program:
         return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
 
     def report(
-        self, tolerance: float = 1e-3, shop: SimulatedMachine | None = None, begin: Begin = silent
+        self,
+        tolerance: float = 1e-3,
+        shop: SimulatedMachine | None = None,
+        begin: Begin = silent,
+        flank_tolerance: float | None = None,
     ) -> MillingReport:
-        """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface."""
+        """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface.
+
+        Flanks may have a ``flank_tolerance`` [mm] of their own.
+        """
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
 
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         corrected = shop is None and any(member.flank(flank).design for flank in FLANKS)
         progress = begin(5 * member.teeth * (1 + corrected), "surface")
-        return milling_report(self.path, member, name, machine, shop, tolerance, progress=progress, space=self.space)
+        return milling_report(
+            self.path,
+            member,
+            name,
+            machine,
+            shop,
+            tolerance,
+            progress=progress,
+            space=self.space,
+            flank_tolerance=flank_tolerance,
+        )
 
     def time(self) -> Trajectory:
         """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""

@@ -185,6 +185,18 @@ def test_all_spaces_are_cut_in_one_roll_within_the_tolerance(cut, hobbed, member
         assert sorted(set(file.select(flank).tooth.tolist())) == list(range(hobbed.member(member).teeth))
 
 
+def test_mill_says_where_hobbed_flanks_keep_more_than_the_program_states(command, written, tmp_path):
+    """It is made for 0.5 um: the grid within the flanks keeps half of that, their borders most of it."""
+    text = written("pinion", tolerance=COARSE)
+    (tmp_path / "HOB.MPF").write_text(text.replace("; flank tolerance: 0.5 um", "; flank tolerance: 0.3 um"))
+    given = ("crown_gear_hobbed_14x39.toml", "--program", tmp_path / "HOB.MPF", "-o", tmp_path / "left.csv")
+    status, out, err = command("mill", *given)
+    assert status == 1
+    assert float(re.search(r"largest deviation ([0-9.]+) um", out)[1]) < 0.3
+    most = re.search(r"the flanks keep up to \+([0-9.]+) um where they end, the program states 0\.3 um: refused", err)
+    assert 0.3 < float(most[1]) <= 0.5
+
+
 DESIGNED = {
     "title": "15 x 41",
     "pinion_teeth": 15,
