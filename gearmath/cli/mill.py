@@ -97,6 +97,8 @@ def mill(
         _say_ridge(made)
         judged = made.judge(found if shop is None else None, begin)
     _say_metal(judged.left)
+    for remark in judged.remarks:
+        click.echo(f"note: {program}: {remark}")
     faults = list(judged.faults)
     if report is not None:
         told = _write_report(report, made, shop, _Limits.of(report_tolerance_um, Stated.of(text), judged.left))

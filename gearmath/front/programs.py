@@ -20,6 +20,7 @@ from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import readable
 from gearmath.machine.judging.checked import CheckedCut, checked_cut
 from gearmath.machine.judging.dialects import named, of_text
+from gearmath.machine.judging.feed import crawling
 from gearmath.machine.judging.program import faults_of, metal_faults
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.metal import metal
@@ -41,10 +42,14 @@ _COLUMNS = 7
 
 @dataclass(frozen=True)
 class Judgement:
-    """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none."""
+    """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none.
+
+    ``remarks`` are sentences about what only takes time.
+    """
 
     left: MetalLeft
     faults: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,7 +126,8 @@ class Program:
         progress = begin(member.teeth, "space")
         left = metal_faults(self.read, self.path, self.runs, member, name, machine, self.space, progress, known)
         found = faults_of(self.read, self.path, self.runs, member, name, machine)
-        return Judgement(left, (*map(str, left.faults), *map(str, found)))
+        slow = crawling(self.path, self.runs, member, machine, Stated.of(self.read))
+        return Judgement(left, (*map(str, left.faults), *map(str, found)), tuple(slow))
 
     def faults(self) -> list[str]:
         """What :meth:`judge` finds, a sentence each; empty where the machine may run it. A dry run cuts no metal."""
