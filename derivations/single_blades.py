@@ -20,6 +20,10 @@ t = c (θ - θ_c)²/2; of the passes, Δθ apart, the nearest is off by Δθ/2 a
 
     δ = c Δθ²/8,   so that   Δθ = √(8 δ/c)                                                      (17.4)
 
+This holds where the same part of the edge meets the point before and after θ_c. Where a part ends, at the border of the
+flank to its fillet, the blade is near on one side only, and up to four times as much is left: Δθ is then as long as
+the blade, with all parts of its edge, stays within δ.
+
 To find which blades come near a point of the work, it is seen from the tool (5.6) in cylindrical coordinates about the
 tool axis. A blade in the plane through that axis reaches it when C stands at its azimuth:
 

@@ -25,7 +25,7 @@ VERBS = {
     "tooth": ("bevel", "Whole teeth of a member: figures, and an STL of a space or of the whole member."),
     "contact": ("contact", "How a pair runs: path of contact, transmission error, V-H check."),
     "nc": ("machine", "NC programs for the vertical 5-axis machine."),
-    "mill": ("machine", "Virtual milling from the program text."),
+    "mill": ("mill", "Virtual milling from the program text."),
     "probe": ("probe_run", "Run a program of 'nc probe' or 'nc calibrate' on the machine model: raw touches."),
     "touches": ("probe", "Raw touches of a probe to measured points."),
     "calibrate": ("probe", "The tip of the probe from its touches on ring and sphere."),

@@ -20,6 +20,7 @@ from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import readable
 from gearmath.machine.judging.checked import CheckedCut, checked_cut
 from gearmath.machine.judging.dialects import named, of_text
+from gearmath.machine.judging.feed import crawling
 from gearmath.machine.judging.program import faults_of, metal_faults
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.metal import metal
@@ -41,10 +42,14 @@ _COLUMNS = 7
 
 @dataclass(frozen=True)
 class Judgement:
-    """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none."""
+    """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none.
+
+    ``remarks`` are sentences about what only takes time.
+    """
 
     left: MetalLeft
     faults: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -121,7 +126,8 @@ class Program:
         progress = begin(member.teeth, "space")
         left = metal_faults(self.read, self.path, self.runs, member, name, machine, self.space, progress, known)
         found = faults_of(self.read, self.path, self.runs, member, name, machine)
-        return Judgement(left, (*map(str, left.faults), *map(str, found)))
+        slow = crawling(self.path, self.runs, member, machine, Stated.of(self.read))
+        return Judgement(left, (*map(str, left.faults), *map(str, found)), tuple(slow))
 
     def faults(self) -> list[str]:
         """What :meth:`judge` finds, a sentence each; empty where the machine may run it. A dry run cuts no metal."""
@@ -131,16 +137,33 @@ class Program:
         return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
 
     def report(
-        self, tolerance: float = 1e-3, shop: SimulatedMachine | None = None, begin: Begin = silent
+        self,
+        tolerance: float = 1e-3,
+        shop: SimulatedMachine | None = None,
+        begin: Begin = silent,
+        flank_tolerance: float | None = None,
     ) -> MillingReport:
-        """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface."""
+        """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface.
+
+        Flanks may have a ``flank_tolerance`` [mm] of their own.
+        """
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
 
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         corrected = shop is None and any(member.flank(flank).design for flank in FLANKS)
         progress = begin(5 * member.teeth * (1 + corrected), "surface")
-        return milling_report(self.path, member, name, machine, shop, tolerance, progress=progress, space=self.space)
+        return milling_report(
+            self.path,
+            member,
+            name,
+            machine,
+            shop,
+            tolerance,
+            progress=progress,
+            space=self.space,
+            flank_tolerance=flank_tolerance,
+        )
 
     def time(self) -> Trajectory:
         """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""

@@ -13,23 +13,23 @@ from gearmath.bevel.ridge import point_width
 from gearmath.bevel.tooth import ToothSpace
 from gearmath.errors import counted
 from gearmath.machine.judging.alike import alike
-from gearmath.machine.judging.block_check import MOST_LINES, Watch, watch
+from gearmath.machine.judging.block_check import Watch, watch
 from gearmath.machine.judging.faults import Fault
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.axis_errors import roll_position
 from gearmath.machine.milling.run import CuttingRun
 from gearmath.machine.milling.surfaces import DEFAULT_COLUMNS, surface_states
 from gearmath.machine.milling.surfaces import DEFAULT_TOLERANCE as REPORTED
-from gearmath.machine.planning.hobbing import index_ratio, spindle_phase
+from gearmath.machine.planning.hobbing import index_ratio
 from gearmath.machine.planning.passes import tooth_angles
-from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions
+from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, spindle_phase
 from gearmath.machine.planning.rounding import FROM_AXIS, FROM_CUTTER, control_share
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.milling_machine import MillingMachine
 
 #: The worst place of a flank deviates by less than this times what three quarters of it do: 2.3 is the most of the
 #: bundled sets at 0.01 um to 100 um, in straight and polynomial blocks.
-_BESIDE_MOST = 3.0
+BESIDE_MOST = 3.0
 #: A dry run may be nearer to its cut than stated by this. [mm]
 _FAR_ABOVE = 0.1
 
@@ -48,7 +48,7 @@ def justified(stated: Stated, usual: float, rounding: float) -> float:
     """
     if not stated.is_ours or stated.stock:
         return allowed(stated)
-    return min(allowed(stated), max(DEFAULT_TOLERANCE, _BESIDE_MOST * usual) + rounding)
+    return min(allowed(stated), max(DEFAULT_TOLERANCE, BESIDE_MOST * usual) + rounding)
 
 
 def missing(stated: Stated, runs: list[CuttingRun], member: Member, name: str) -> Iterator[Fault]:
@@ -184,7 +184,7 @@ def metal_left(
     found = watch(runs, member, machine, None, progress, groups, most)
     tolerance = justified(stated, found.usual, control_share(member, name, machine).rounding)
     faults = []
-    says = _says(stated, tolerance)
+    source = says(stated, tolerance)
     for value, (number, flank, line), wrong in (
         (found.lowest, found.lowest_at, found.lowest < stock - tolerance),
         (found.highest, found.highest_at, found.highest > most + tolerance),
@@ -192,7 +192,7 @@ def metal_left(
         if wrong:
             faults.append(
                 Fault(
-                    f"of the program (space {number}, {flank} flank) leaves {value * 1000:+.3f} um, {says} "
+                    f"of the program (space {number}, {flank} flank) leaves {value * 1000:+.3f} um, {source} "
                     + (f"{stock * 1000:g} um of stock within " if stock else "")
                     + f"{tolerance * 1000:g} um",
                     line,
@@ -243,21 +243,10 @@ def _exposed(groups: dict[int, list[int]], member: Member) -> list[int]:
     return sorted(chosen)
 
 
-def hobbed(deviation: np.ndarray, stated: Stated, rounding: float) -> MetalLeft:
-    """What the deviations (n,) [mm] of hobbed flanks from those of their settings say."""
-    deviation = np.abs(deviation)
-    tolerance = justified(stated, float(np.quantile(deviation, MOST_LINES)), rounding)
-    faults = []
-    if not (worst := float(deviation.max())) <= stated.stock + tolerance:
-        says = _says(stated, tolerance)
-        faults.append(Fault(f"the flanks deviate by up to {worst * 1000:.3f} um, {says} {tolerance * 1000:g} um"))
-    return MetalLeft(None, tolerance, tuple(faults))
-
-
-def _says(stated: Stated, tolerance: float) -> str:
+def says(stated: Stated, tolerance: float) -> str:
     """Where a tolerance comes from, for a sentence that gives it next."""
     if stated.tolerance is None:
-        return "allowed are"
+        return "no tolerance is stated, allowed are"
     if tolerance < stated.tolerance:
         return f"the program states {stated.tolerance * 1000:g} um, and its blocks are made for"
     return "the program states"

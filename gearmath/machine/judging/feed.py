@@ -21,6 +21,8 @@ from gearmath.specs.milling_machine import MillingMachine
 STATED_SLACK = 1e-2
 #: The part of the blocks that says how fast a program is, and how much faster some of them may be.
 _MOST_BLOCKS, _BESIDE_MOST = 0.75, 2.0
+#: A block crawls that is slower by this factor than stated, and than its axes are, and takes longer than this. [s]
+_CRAWLS, _LONG = 10.0, 5.0
 
 
 def feeds(
@@ -114,3 +116,47 @@ def _most(speed: np.ndarray, stated: float | None, default: float) -> float:
     if stated is None or not len(speed):
         return np.inf
     return min(stated, max(default, _BESIDE_MOST * float(np.quantile(speed, _MOST_BLOCKS))))
+
+
+def crawling(
+    path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine, stated: Stated
+) -> list[str]:
+    """Sentences of blocks that take long because their feed is far below what the program states, or where it states
+    nothing below that of most blocks, and not because an axis can go no faster: the longest of each kind.
+
+    They damage nothing, and are no faults. ``runs`` are those of the path on a machine without errors.
+    """
+    found = []
+    for run in runs:
+        rows, seconds, _ = feed_rows(path, run)
+        down = ~(run.axes[rows] - run.axes[rows - 1])[:, [0, 1, 3, 4]].any(axis=1)
+        past = past_the_tooth(run, rows, seconds, member, machine)
+        plunge = stated.plunge
+        if plunge and stated.feed and member.generation == "formate":  # whose last way down has the feed of the cut
+            plunge = min(plunge, stated.feed)
+        kinds = [(down, past, plunge, "mm/min"), (~down, past, stated.feed, "mm/min")]
+        if run.blades is not None:  # the roll is as slow as the tolerance wants it
+            kinds[1] = (~down, _turning(run, rows, seconds), stated.rpm, "rpm of C")
+        least = _least_seconds(run, rows, machine)
+        for kind, speed, wanted, unit in kinds:
+            usual = wanted or float(np.median(speed[kind])) if kind.any() else 0.0
+            slow = np.flatnonzero(kind & (speed * _CRAWLS < usual) & (seconds > _CRAWLS * least))
+            lines, of_line = np.unique(run.line[rows[slow]], return_inverse=True)
+            times = np.bincount(of_line, seconds[slow], len(lines))
+            if (times > _LONG).any():
+                worst = int(times.argmax())
+                at = speed[slow[of_line == worst]].min()
+                asked = f"the program states {wanted:g}" if wanted else f"most blocks have {usual:.4g}"
+                count = int((times > _LONG).sum())
+                crawl = f"{count} blocks crawl, the longest is" if count > 1 else "a block crawls:"
+                took = f"{times[worst] / 60:.1f} min at {at:.2g} {unit}, {asked} {unit}"
+                found.append(f"{crawl} line {lines[worst]}, {took}: look at its F and G93")
+    return found
+
+
+def _least_seconds(run: CuttingRun, rows: np.ndarray, machine: MillingMachine) -> np.ndarray:
+    """The time (m,) [s] that the fastest speed of every axis leaves for blocks."""
+    positions = run.axes if run.blades is None else np.column_stack([run.axes, run.turned])
+    steps = np.abs(positions[rows] - positions[rows - 1])
+    least: np.ndarray = np.nanmax(steps / machine.limits(positions.shape[1]).max_speed, axis=1)
+    return least

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
+
 from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.machine.bodies.profiles import obstacles
 from gearmath.machine.control.executor import MachinePath, parsed
@@ -26,13 +28,13 @@ from gearmath.machine.judging.cut import (
     MetalLeft,
     as_cut,
     beside_the_path,
-    hobbed,
     metal_left,
     missing,
     no_dry_run,
 )
 from gearmath.machine.judging.faults import Fault, first_of_each
 from gearmath.machine.judging.header import header_faults
+from gearmath.machine.judging.hobbed_flanks import hobbed, left_at_borders
 from gearmath.machine.judging.motion import motion_faults
 from gearmath.machine.judging.outside import outside_faults
 from gearmath.machine.judging.plunge import plunge_ends
@@ -99,7 +101,8 @@ def metal_faults(
     if space is None:
         known = milled if made == member else None
         left = mill_member(path, made, name, machine, None, progress, runs) if known is None else known
-        return hobbed(left.deviation, stated, control_share(made, name, machine).rounding)
+        borders = np.zeros(0) if stated.stock else left_at_borders(runs, made, machine)
+        return hobbed(left.deviation, borders, stated, control_share(made, name, machine).rounding)
     own = space if made == member else tooth_space(made, name, 7)
     return metal_left(runs, made, name, machine, stated, own, progress)
 

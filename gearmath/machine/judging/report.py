@@ -21,14 +21,16 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 
 @dataclass(frozen=True)
 class MillingReport:
-    """Everything that a program does to a member and to the machine; lengths in mm, ``tolerance`` too.
+    """Everything that a program does to a member and to the machine; lengths in mm.
 
+    On flanks ``flank_tolerance`` is the limit, on fillets and roots ``tolerance``.
     ``surfaces`` are compared with the design. Where the settings were corrected and the machine has no errors,
     ``surfaces_of_settings`` are compared with what these settings cut, and judged; else there are none.
     """
 
     member: str
     tolerance: float
+    flank_tolerance: float
     surfaces: tuple[SurfaceState, ...]
     surfaces_of_settings: tuple[SurfaceState, ...]
     collisions: tuple[Collision, ...]
@@ -64,20 +66,24 @@ def milling_report(
     columns: int = DEFAULT_COLUMNS,
     progress: Callable[[int], object] = lambda _: None,
     space: ToothSpace | None = None,
+    flank_tolerance: float | None = None,
 ) -> MillingReport:
-    """The report of a whole program. ``progress`` is called for every surface of every space, five to a space, and
+    """The report of a whole program; flanks have the ``tolerance`` [mm] of the other surfaces where they have none of
+    their own. ``progress`` is called for every surface of every space, five to a space, and
     twice for corrected settings; ``space`` is the nominal space where it is known. Raises InputError if a tool is not
     of this member.
     """
     space = space or tooth_space(member, name, columns)
     runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
-    states = surface_states(path, member, name, machine, errors, None, tolerance, columns, runs, progress, space)
+    on_flanks = tolerance if flank_tolerance is None else flank_tolerance
+    judged = (None, tolerance, columns, runs, progress)
+    states = surface_states(path, member, name, machine, errors, *judged, space, on_flanks)
     made, own = as_cut(member, space), []
     if made != member and errors is None:
         other = tooth_space(made, name, columns)
-        own = surface_states(path, made, name, machine, None, None, tolerance, columns, runs, progress, other)
+        own = surface_states(path, made, name, machine, None, *judged, other, on_flanks)
     met = collisions(path, runs, member, machine, *obstacles(machine, errors))
-    return MillingReport(name, tolerance, tuple(states), tuple(own), tuple(met), timing(path, machine))
+    return MillingReport(name, tolerance, on_flanks, tuple(states), tuple(own), tuple(met), timing(path, machine))
 
 
 def largest(states: tuple[SurfaceState, ...], surface: str) -> float:

@@ -101,9 +101,11 @@ def surface_states(
     runs: list[CuttingRun] | None = None,
     progress: Callable[[int], object] = lambda _: None,
     space: ToothSpace | None = None,
+    flank_tolerance: float | None = None,
 ) -> list[SurfaceState]:
     """Every surface of ``spaces`` (all that the program cuts, by default), exposed to every pass of every tool.
 
+    What is a fault on flanks is ``flank_tolerance`` [mm] where that is given, and else ``tolerance`` as elsewhere.
     ``runs`` replaces the tools of the program, whose ``path`` is then not needed; ``space`` the nominal space.
     ``progress`` is called with the number of surfaces done. Raises InputError if a tool is not of this member.
     """
@@ -124,7 +126,8 @@ def surface_states(
         for surface in surfaces:
             point, normal = turned(surface.point, angle), turned(surface.normal, angle)
             left = expose(runs, machine, errors, point, normal, surface.start)
-            states.append(_state(surface, number, left.distance, left.block, lines, tolerance))
+            limit = flank_tolerance if flank_tolerance is not None and surface.name.endswith("flank") else tolerance
+            states.append(_state(surface, number, left.distance, left.block, lines, limit))
             progress(1)
     return states
 

@@ -18,7 +18,8 @@ from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.planning.curves import STEPS, hermite_powers, powers_of, steps_between, turning_seconds
-from gearmath.machine.planning.hobbing import HobbingMotion, HobbingPass, off_the_roll, six_axes, spindle_phase
+from gearmath.machine.planning.hobbing import HobbingMotion, HobbingPass, off_the_roll
+from gearmath.machine.planning.path import six_axes, spindle_phase
 from gearmath.specs.bevel_set import Flank
 from gearmath.specs.milling_machine import CUTTER_AXIS, MillingMachine
 

@@ -12,14 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearmath.bevel.method import motion_of
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.machine.bodies.blades import Edge, blades_of, crossing
 from gearmath.machine.planning.blocks import ROUNDING, check_tolerance
 from gearmath.machine.planning.feeds import paced_seconds
-from gearmath.machine.planning.path import Cut, axis_positions, roll_range, whole_flank
-from gearmath.specs.bevel_set import FLANKS, Flank, Member
+from gearmath.machine.planning.path import Cut, axis_positions, roll_range, six_axes
+from gearmath.machine.planning.visits import roll_in_a_turn
+from gearmath.specs.bevel_set import Flank, Member
 from gearmath.specs.milling_machine import AxisLimits, MillingMachine
 
 #: No block turns A or C further than this: DC goes the short way.
@@ -30,14 +29,12 @@ _CHORD_SHARE = 0.1
 C_ROUNDING = math.radians(0.5e-6) * 250.0
 #: With less, decimals and chords leave nothing for the scallops. [mm]
 _LEAST_TOLERANCE = 1.5e-5
-#: The approach of a blade to its contact is measured this far before and behind it. [rad]
-_BESIDE = 2e-3
 #: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
 _PLUNGE_PER_TURN, _ROLL_PER_TURN = 0.2, 3.0
 #: No roll takes more turns of the work than this.
 _MOST_TURNS = 20_000
-#: The parabola of (17.4) may be too low by this part; turns of the work at the bottom, where nothing rolls.
-_PARABOLA_MARGIN, _FORMATE_TURNS = 1.05, 1.25
+#: Turns of the work at the bottom, where nothing rolls.
+_FORMATE_TURNS = 1.25
 
 
 @dataclass(frozen=True)
@@ -78,58 +75,6 @@ class Drive:
 def index_ratio(member: Member) -> float:
     """The turn of the work for one of the cutter."""
     return member.indexing_sign * (member.blade_groups or 1) / member.teeth
-
-
-def spindle_phase(flank: Flank, theta: np.ndarray) -> np.ndarray:
-    """ψ (5.8) at cradle rotations (n,), moving settings included, continuous."""
-    settings, motion = flank.vector, motion_of(flank)
-    if motion.any():
-        (settings,) = kernel("moved_settings")(settings, motion, theta)
-    (psi,) = kernel("cutter_phase")(settings, theta)
-    return np.unwrap(psi)
-
-
-def six_axes(
-    flank: Flank, theta: np.ndarray, beta: np.ndarray, index_ratio: float, pivot_height: float, pivot: np.ndarray
-) -> np.ndarray:
-    """X Y Z A B C (n,6) at cradle rotations and cutter angles (n,); A and C count on."""
-    axes = axis_positions(flank, theta, pivot_height, pivot)
-    axes[:, 3] -= index_ratio * beta
-    return np.column_stack([axes, beta + spindle_phase(flank, theta)])
-
-
-def approach_curvature(member: Member, flank: str, index_ratio: float) -> np.ndarray:
-    """c (n,) [mm/rad²] of (17.4) over the whole flank, on the exact path: how blades come near a point and leave it.
-
-    Every point is met by the blade at its contact (zero), and a bit before and behind it.
-    """
-    spec, points = member.flank(flank), whole_flank(member, flank)
-    edge = next(edge for edge in blades_of(member).edges if (edge.flank, edge.part) == (flank, "main"))
-    u, beta, theta = points.contact.T
-    distance = [
-        _distance(spec, edge, index_ratio, (u, beta, theta + off), points.point, points.normal)
-        for off in (-_BESIDE, 0.0, _BESIDE)
-    ]
-    return (distance[0] - 2 * distance[1] + distance[2]) / _BESIDE**2
-
-
-def _distance(
-    spec: Flank, edge: Edge, index_ratio: float, contact: tuple[np.ndarray, ...], point: np.ndarray, normal: np.ndarray
-) -> np.ndarray:
-    """Where lines (n,) are cut while the cradle stands still near their contact, and cutter and work turn."""
-    u, beta, theta = contact
-    order = np.argsort(theta, kind="stable")  # ψ and A are made continuous from row to row
-    ends = []
-    for off in (-0.2, 0.2):
-        axes = np.empty((len(u), 6))
-        axes[order] = six_axes(spec, theta[order], beta[order] + off, index_ratio, 0.0, np.zeros(3))
-        ends.append(axes)
-    first, last = ends
-    start = np.column_stack([u, np.full(len(u), 0.5), np.zeros(len(u))])
-    found, _ = crossing(edge.is_arc)(
-        start, first[:, :5], last[:, :5], first[:, 5], last[:, 5], 0.0, np.zeros(3), *edge.arguments, point, normal
-    )
-    return found[:, 2]
 
 
 @dataclass(frozen=True)
@@ -220,14 +165,13 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
 
 
 def _roll(member: Member, cut: Cut, drive: Drive, scallop: float) -> tuple[float, float, float]:
-    """Cradle rotations of start and end, half a turn's roll beyond what generates the flanks; turns of the work."""
+    """Cradle rotations of start and end, a turn's roll beyond what generates the flanks; turns of the work."""
     if member.generation == "formate":
         return 0.0, 0.0, _FORMATE_TURNS
-    curvature = max(float(approach_curvature(member, flank, drive.index_ratio).max()) for flank in FLANKS)
-    (step,) = kernel("roll_per_turn")(scallop, curvature * _PARABOLA_MARGIN)
+    step = roll_in_a_turn(member, drive.index_ratio, drive.sense, scallop)
     low, high = roll_range(member, cut)
-    low, high = low - float(step) / 2, high + float(step) / 2
-    return low, high, (high - low) / float(step)
+    low, high = low - step, high + step
+    return low, high, (high - low) / step
 
 
 def _way_past(spec: Flank, theta: np.ndarray, tooth: np.ndarray, pivot: tuple[float, np.ndarray]) -> float:

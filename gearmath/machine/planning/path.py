@@ -143,7 +143,7 @@ def _touching(section: Section, u: np.ndarray, side: int) -> np.ndarray:
 def roll_range(member: Member, cut: Cut) -> tuple[float, float]:
     """Cradle rotations [rad] between which the cutter generates the flanks of a pass, their fillets and the root."""
     theta = [whole_flank(member, flank).contact[:, 2] for flank in cut.flanks]
-    if member.generation == "generated" and member.process != "face_hobbing":
+    if member.generation == "generated":
         ends = np.linspace(0.0, 1.0, 5)
         rows = (row for flank in cut.flanks for _, row, _ in below_the_flank(member, flank, ends))
         theta += [row.contact[row.converged, 2] for row in rows]
@@ -175,6 +175,24 @@ def axis_positions(
     if len(axes):
         axes[:, 3] -= 2 * math.pi * np.round(axes[0, 3] / (2 * math.pi))
     return axes
+
+
+def spindle_phase(flank: Flank, theta: np.ndarray) -> np.ndarray:
+    """ψ (5.8) at cradle rotations (n,), moving settings included, continuous."""
+    settings, motion = flank.vector, motion_of(flank)
+    if motion.any():
+        (settings,) = kernel("moved_settings")(settings, motion, theta)
+    (psi,) = kernel("cutter_phase")(settings, theta)
+    return np.unwrap(psi)
+
+
+def six_axes(
+    flank: Flank, theta: np.ndarray, beta: np.ndarray, index_ratio: float, pivot_height: float, pivot: np.ndarray
+) -> np.ndarray:
+    """X Y Z A B C (n,6) at cradle rotations and cutter angles (n,); A and C count on."""
+    axes = axis_positions(flank, theta, pivot_height, pivot)
+    axes[:, 3] -= index_ratio * beta
+    return np.column_stack([axes, beta + spindle_phase(flank, theta)])
 
 
 def within_travel(

@@ -21,7 +21,7 @@ from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius, mean_tooth_th
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.blades import blade_phase, blades_of
-from gearmath.machine.planning.hobbing import six_axes
+from gearmath.machine.planning.path import six_axes
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked

@@ -12,6 +12,7 @@ from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.judging.cut import metal_left
+from gearmath.machine.judging.feed import crawling
 from gearmath.machine.judging.program import faults_of
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.milling.run import runs_of
@@ -225,7 +226,7 @@ def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, verti
 
     assert left(text) == []
     unsaid = bent(text, r"^; flank tolerance: .*\n", "")
-    assert any(re.search(r"leaves .* um, allowed are 1 um", one) for one in left(unsaid))
+    assert any(re.search(r"leaves .* um, no tolerance is stated, allowed are 1 um", one) for one in left(unsaid))
     stock = cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0,), 5e-3, finishing_stock=0.1))
     assert left(stock) == []
     said = left(stock.replace("; finish: stock 0.1 mm", "; finish: stock 0 mm"))
@@ -315,3 +316,49 @@ def test_what_does_no_harm_is_no_fault(text, judged, pattern, wanted):
 def test_dynamics_are_those_of_the_machine_file(text, judged):
     assert any("cuts with FFWOF, the machine file has FFWON" in one for one in judged(text.replace("FFWON", "FFWOF")))
     assert any("cuts with BRISK, the machine file has SOFT" in one for one in judged(text.replace("SOFT", "BRISK")))
+
+
+@pytest.fixture
+def crawl(vertical):
+    """The sentences that a text for a member of a set earns for blocks that take long."""
+
+    def judge(text, spec, name):
+        path = execute(text, "CUT", Setup.of(vertical))
+        space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)
+        return crawling(path, runs_of(path, spec, name, vertical, None, space), spec, vertical, Stated.of(text))
+
+    return judge
+
+
+def test_blocks_that_crawl_are_named_with_their_time_and_what_the_program_states(gear_set, vertical, text, crawl):
+    """A hundredth of F in the middle of a roll, a fiftieth in all of it; F of G93 read in mm/min in a plunge."""
+    assert crawl(text, gear_set.gear, "gear") == []
+    lines = text.split("\n")
+    rolls = [k for k, line in enumerate(lines) if " G93 G1 X" in line]
+    k = rolls[len(rolls) // 3]
+    value = float(re.search(r" F([0-9.]+)", lines[k])[1]) / 100
+    slow = "\n".join([*lines[:k], re.sub(r" F[0-9.]+", f" F{value:.6f}", lines[k]), *lines[k + 1 :]])
+    minutes, speed = 1 / value, 3.0  # F of G93 is one over minutes; 300 mm/min are stated
+    said = rf"a block crawls: line {k + 1}, {minutes:.1f} min at {speed:.2g} mm/min, the program states 300 mm/min: "
+    assert re.match(said, crawl(slow, gear_set.gear, "gear")[0])
+    every = re.sub(r"(G93 G1 X.* F)([0-9.]+)", lambda found: f"{found[1]}{float(found[2]) / 50:.6f}", text)
+    assert re.match(r"\d+ blocks crawl, the longest is line ", crawl(every, gear_set.gear, "gear")[0])
+    formate = load_bevel_set(bundled("crown_gear_formate_14x39.toml"))
+    down = cutting_program(formate, "gear", vertical, "CUT", CuttingJob((0,)))
+    without = crawl(bent(down, r"G93 (G1 .*)", r"\1"), formate.gear, "gear")
+    assert re.search(r"at 15 mm/min, the program states 200 mm/min: look at its F and G93", without[0])
+    nothing_stated = re.sub(r"^; feed.*\n", "", slow, flags=re.MULTILINE)
+    assert re.search(r"at 3 mm/min, most blocks have 300 mm/min", crawl(nothing_stated, gear_set.gear, "gear")[0])
+
+
+def test_hobbing_crawls_where_its_cutter_hardly_turns_and_not_where_the_tolerance_wants_a_slow_roll(vertical, crawl):
+    bevel_set = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
+    text = cutting_program(bevel_set, "pinion", vertical, "CUT", CuttingJob(range(14), 5e-3))
+    assert crawl(text, bevel_set.pinion, "pinion") == []
+    lines = text.split("\n")
+    k = [k for k, line in enumerate(lines) if " G93 G1 " in line][40]
+    slow = "\n".join([*lines[:k], re.sub(r" F[0-9.]+", " F0.05", lines[k]), *lines[k + 1 :]])
+    (said,) = crawl(slow, bevel_set.pinion, "pinion")
+    assert re.match(
+        rf"a block crawls: line {k + 1}, 20.0 min at 0\.\d+ rpm of C, the program states 120 rpm of C", said
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -134,7 +135,23 @@ def test_command_writes_the_report_beside_the_flank_file(command, tmp_path, host
     assert status == 0, err
     assert "0 collisions" in out
     found = json.loads(report.read_text())
-    assert set(found) == {"member", "tolerance", "surfaces", "surfaces_of_settings", "collisions", "timing"}
+    keys = {"member", "tolerance", "flank_tolerance", "surfaces", "surfaces_of_settings", "collisions", "timing"}
+    assert set(found) == keys
+    assert (found["flank_tolerance"], found["tolerance"]) == (pytest.approx(1e-4), 1e-3)  # as the header states; 1 um
     assert found["surfaces_of_settings"] == []  # the set is not corrected
     assert len(found["surfaces"]) == 2 * len(SURFACES)
     assert found["timing"]["feed_seconds"] > 1
+    # stated finer than it is made: said with both figures, by the blocks and by the report
+    text = program.read_text()
+    program.write_text(text.replace("; flank tolerance: 0.1 um", "; flank tolerance: 0.05 um"))
+    given = ("mill", gear_set, "--program", program, "-o", tmp_path / "gear.csv", "--report", report)
+    status, _, err = command(*given)
+    assert status == 1
+    assert re.search(r"2 flanks gouged by up to -0\.0[5-9]\d um, the program states 0\.05 um", err), err
+    status, _, err = command(*given, "--report-tolerance-um", "0.06")
+    assert re.search(r"2 flanks gouged by up to -0\.0[6-9]\d um, --report-tolerance-um allows 0\.06 um", err), err
+    # without its header nobody knows what it was made for
+    program.write_text("\n".join(line for line in text.split("\n") if line[:1] != ";" or line.startswith("; spaces")))
+    status, out, err = command(*given, "--member", "gear")
+    assert "within 1 um, as none is stated" in out, err
+    assert json.loads(report.read_text())["flank_tolerance"] == 1e-3

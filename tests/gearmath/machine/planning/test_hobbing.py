@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
+from gearmath.bevel.design.route import design
 from gearmath.bevel.flank import blank_grid, solve_flank
 from gearmath.bevel.generation_kernels import generation_point
 from gearmath.bevel.method import generation_of
@@ -30,12 +31,14 @@ from gearmath.machine.milling.surfaces import nominal_surfaces, surface_states
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.cut_plan import CuttingJob, tooth_in_roll
 from gearmath.machine.planning.passes import Pass
-from gearmath.machine.planning.path import Cut, axis_positions, flank_points
+from gearmath.machine.planning.path import Cut, axis_positions, below_the_flank, flank_points
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.machine.writing.program import write_program
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES, Motion, Settings, load_bevel_set
+from gearmath.specs.design import DesignData
 from gearmath.specs.simulated_machine import AxisErrors, Harmonic, Mounting, SimulatedMachine, WorkAxis
-from gearmath.specs.toml import bundled
+from gearmath.specs.toml import bundled, checked
+from tests.gearmath.machine.milling.flank_borders import left_at_borders
 
 COARSE = 5e-4  # mm
 MOTION = Motion(sliding_base=(0.9, -0.5), modified_roll=(0.04, -0.2), radial_distance=(0.3,))
@@ -177,10 +180,63 @@ def test_deviation_is_that_of_a_brute_force_sweep_of_every_blade(hobbed, written
 def test_all_spaces_are_cut_in_one_roll_within_the_tolerance(cut, hobbed, member):
     file = cut(member)
     assert np.abs(file.deviation).max() <= COARSE
-    assert file.deviation.max() >= 0.5 * COARSE  # and no more turns than the tolerance asks for
     assert file.deviation.min() > -2e-5  # straight blocks and printed decimals gouge, scallops do not
     for flank in FLANKS:
         assert sorted(set(file.select(flank).tooth.tolist())) == list(range(hobbed.member(member).teeth))
+
+
+def test_mill_says_where_hobbed_flanks_keep_more_than_the_program_states(command, written, tmp_path):
+    """It is made for 0.5 um: the grid within the flanks keeps half of that, their borders most of it."""
+    text = written("pinion", tolerance=COARSE)
+    (tmp_path / "HOB.MPF").write_text(text.replace("; flank tolerance: 0.5 um", "; flank tolerance: 0.3 um"))
+    given = ("crown_gear_hobbed_14x39.toml", "--program", tmp_path / "HOB.MPF", "-o", tmp_path / "left.csv")
+    status, out, err = command("mill", *given)
+    assert status == 1
+    assert float(re.search(r"largest deviation ([0-9.]+) um", out)[1]) < 0.3
+    most = re.search(r"the flanks keep up to \+([0-9.]+) um where they end, the program states 0\.3 um: refused", err)
+    assert 0.3 < float(most[1]) <= 0.5
+
+
+DESIGNED = {
+    "title": "15 x 41",
+    "pinion_teeth": 15,
+    "wheel_teeth": 41,
+    "outer_transverse_module": 5.0,
+    "face_width": 30.0,
+    "cutter": {"cutter_radius": 88.0, "process": "face_hobbing", "blade_groups": 13},
+    "pinion": {"cutting": "completing"},
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "member", "tolerance"),
+    [
+        ("bundled", "pinion", 1e-4),
+        ("bundled", "gear", COARSE),
+        ("bundled", "pinion", 5e-3),
+        ("toprem", "gear", 1e-4),
+        ("designed", "gear", 1e-3),
+    ],
+)
+def test_border_of_the_flank_to_the_fillet_keeps_the_tolerance_and_needs_it(
+    hobbed, written, vertical, host_compiler, kind, member, tolerance
+):
+    """A blade comes near to it from one side only, so that most is left there; or at the face cone. In some space it is
+    nearly all that is allowed.
+    """
+    gear_set = hobbed if kind != "designed" else design(checked(DESIGNED, DesignData, "a test")).pair
+    if kind == "toprem":
+        gear_set = changed(hobbed, member, **both(hobbed.member(member), toprem_angle=14.0, toprem_height=1.0))
+    spec = gear_set.member(member)
+    path = execute(written(member, gear_set=gear_set, tolerance=tolerance), "HOB.MPF")
+    highest = left_at_borders(path, spec, member, vertical).max()
+    assert 0.7 * tolerance <= highest <= tolerance
+
+
+def border_of(flank):
+    """The points of a flank where its fillet begins."""
+    last = flank.section.index("edge") - 1
+    return replace(flank, point=flank.point[last], normal=flank.normal[last])
 
 
 def turns(text):
@@ -190,7 +246,8 @@ def turns(text):
 def test_scallops_are_parabolas_of_the_approach_of_the_blade(hobbed, written, cut):
     """Of chapter 10 by another solver: t at ±0.005 rad gives c, and the spaces lie anywhere between two passes.
 
-    So their mean is a third of the full height c Δθ²/8.
+    So they range over the full height c Δθ²/8, with √(4/45) of it as their standard deviation; straight blocks take the
+    same from all of them.
     """
     member, path = hobbed.gear, execute(written("gear"), "HOB.MPF")
     for flank in FLANKS:
@@ -204,8 +261,8 @@ def test_scallops_are_parabolas_of_the_approach_of_the_blade(hobbed, written, cu
         rolled = np.hypot(*np.ptp(path.axes[cutting, :2], axis=0))  # a chord of the cradle's circle
         roll = 2 * math.asin(rolled / 2 / member.concave.radial_distance)
         height = c * (roll / turns(written("gear"))) ** 2 / 8
-        assert file.deviation[middle].mean() == pytest.approx(height / 3, rel=0.1)
-        assert file.deviation[middle].max() == pytest.approx(height, rel=0.15)
+        assert file.deviation[middle].std() == pytest.approx(height * math.sqrt(4 / 45), rel=0.1)
+        assert np.ptp(file.deviation[middle]) == pytest.approx(height, rel=0.15)
 
 
 def approach(member, flank, point, normal):
@@ -549,7 +606,7 @@ def test_setting_errors_act_like_cutting_with_those_settings(hobbed, gear_set, v
 @pytest.mark.slow
 @pytest.mark.parametrize("member", MEMBERS)
 def test_report_finds_no_fault_in_a_right_program_and_times_c(hobbed, written, vertical, host_compiler, member):
-    """Flanks down to their fillets within 1 µm, no gouge anywhere; a fillet of 0.02 mm keeps scallops of some µm."""
+    """Flanks down to their fillets within 0.1 µm, no gouge anywhere; a fillet of 0.02 mm keeps scallops of some µm."""
     path = execute(written(member, tolerance=1e-4), "HOB.MPF")
     spec = hobbed.member(member)
     space = tooth_space(spec, member, 5)
@@ -557,7 +614,7 @@ def test_report_finds_no_fault_in_a_right_program_and_times_c(hobbed, written, v
     assert len(states) == 10
     for state in states:
         assert state.lowest > -1e-5, state
-        assert state.highest < (5e-3 if "fillet" in state.surface else 1e-3), state
+        assert state.highest < (5e-3 if "fillet" in state.surface else 1e-4), state
         assert state.line > 0
     runs = runs_of(path, spec, member, vertical, None, space, SHARP_EDGE)
     assert collisions(path, runs, spec, vertical) == []
@@ -582,7 +639,7 @@ def test_rounded_edges_are_cut_without_gouge(hobbed, written, vertical, host_com
     other = changed(hobbed, "gear", **both(hobbed.gear, blade_edge_radius=0.4))
     highest = []
     for gear_set in (hobbed, other):
-        path = execute(written("gear", gear_set=gear_set), "HOB.MPF")
+        path = execute(written("gear", gear_set=gear_set, tolerance=3e-4), "HOB.MPF")
         states = surface_states(path, gear_set.gear, "gear", vertical, spaces=(1,), columns=5)
         assert min(state.lowest for state in states) > -2e-5
         highest.append(max(state.highest for state in states if "fillet" in state.surface))
@@ -654,12 +711,14 @@ def test_command_line_writes_and_mills(tmp_path, command):
     assert not (tmp_path / "NO.MPF").exists()
 
 
-def middle_of_roll(text, blocks):
-    """Some blocks from the middle of a program, with head and end, and the index of the line in their middle."""
+def part_of_roll(text, blocks, x, y):
+    """Some blocks of a program, with head and end, and the index of the line in their middle, which ends near x, y."""
     lines = text.split("\n")
     head = ["G17 G40 G90 G94 G710 G54", 'T="GEAR" D1', "M6", "SPOS=0", "M8"]
     cut_lines = [line for line in lines if " G93 " in line]
-    chosen = cut_lines[len(cut_lines) * 2 // 3 :][: blocks + 1]
+    ends = np.array([[float(value) for value in re.findall(r" [XY](-?[0-9.]+)", line)] for line in cut_lines])
+    nearest = int(np.hypot(*(ends - [x, y]).T).argmin())
+    chosen = cut_lines[nearest - blocks // 2 :][: blocks + 1]
     start = re.sub(r"^N\d+ G93 G1 (.*) F\S+$", r"G0 \1", chosen[0])
     return [*head, start, *chosen[1:], "M5 M9", "M30"], len(head) + 1 + blocks // 2
 
@@ -681,15 +740,20 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
     by more than 1 µm along the normal, or does not come there at all. Seen is what leaves the tolerance of 0.1 µm.
     """
     member = hobbed.gear
-    text, changed_line = middle_of_roll(written("gear", tolerance=1e-4), 30)
+    # the border of the convex flank at the heel is what the roll is so slow for: it can spare no turn of the work
+    border = next(row for part, row, _ in below_the_flank(member, "convex", np.ones(1)) if part == "main")
+    x, y = axis_positions(member.convex, border.contact[:, 2], vertical.pivot_height, vertical.pivot)[0, :2]
+    text, changed_line = part_of_roll(written("gear", tolerance=1e-4), 30, x, y)
     path = execute("\n".join(text), "P")
-    parts = [solve_flank(member, "gear", flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
+    parts: list = [solve_flank(member, "gear", flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
+    space = tooth_space(member, "gear", 21)
+    parts += [border_of(getattr(space, flank)) for flank in FLANKS]  # most is left there where a visit is missing
     angles = [2 * math.pi * space / 39 for space in range(39)]
     point, normal = (
         np.concatenate([turned(getattr(part, key), angle) for part in parts for angle in angles])
         for key in ("point", "normal")
     )
-    blades, pose = blades_of(member), (vertical.pivot_height, vertical.pivot)
+    blades, pose = blades_of(member, SHARP_EDGE), (vertical.pivot_height, vertical.pivot)
 
     def left(which, axes, cutter, cutting):
         start = np.full(len(point[which]), -1.0)

@@ -18,11 +18,12 @@ from gearmath.machine.judging.trajectory import trajectory
 from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.planning.cut_plan import CuttingJob, cutting_plan
-from gearmath.machine.planning.hobbing import six_axes, spindle_phase
+from gearmath.machine.planning.path import six_axes, spindle_phase
 from gearmath.machine.writing.cutting import cutting_program
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import load_milling_machine
 from gearmath.specs.toml import bundled
+from tests.gearmath.machine.milling.flank_borders import left_at_borders
 from tests.gearmath.machine.writing.polynomial_text import along_blocks, written_again, written_in
 
 MODULO = load_milling_machine(bundled("vertical_5axis.toml"))
@@ -91,8 +92,10 @@ def test_the_text_cuts_all_spaces_within_its_tolerance_and_mill_has_nothing_to_s
     text, machine = text_of(member, degree=degree), MACHINES[degree]
     stated = float(re.search(r"flank tolerance: ([0-9.]+) um", text)[1]) / 1000
     assert stated == pytest.approx(1e-4)
-    left = mill_member(execute(text, "HOB", Setup.of(machine)), HOBBED.member(member), member, machine)
+    path = execute(text, "HOB", Setup.of(machine))
+    left = mill_member(path, HOBBED.member(member), member, machine)
     assert np.abs(left.deviation).max() <= stated
+    assert 0.7 * stated <= left_at_borders(path, HOBBED.member(member), member, machine).max() <= stated
     assert judged(text, member, machine) == []
 
 
