@@ -14,6 +14,7 @@ from gearmath.bevel.design.backlash import completing_backlash, with_backlash
 from gearmath.bevel.design.completing import completing_pinion
 from gearmath.bevel.design.designed_flank import DesignedFlank
 from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_table, with_flank
+from gearmath.bevel.design.point_widths import with_point_widths
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
 from gearmath.bevel.design.start import USUAL, Teeth, blank_for, edge_radius
@@ -111,7 +112,8 @@ def _one_by_one(
     for side, own in OWN.items():
         flanks[side] = rounded_pinion(pinion_flank(start, own, requests[side], data.pinion.may_change), data.shop)
         found = with_flank(found, own, flanks[side].x)
-    return with_backlash(found, gear, backlash, start, data.shop.angle_step), dict(flanks)
+    found = with_backlash(found, gear, backlash, start, data.shop.angle_step)
+    return with_point_widths(found, "pinion"), dict(flanks)
 
 
 def _at_once(
