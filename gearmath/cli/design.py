@@ -93,11 +93,6 @@ def _text(title: str, figures: dict[str, Any]) -> str:
             for name, land in lands.items()
         ),
         *(
-            [f"undercut of the {name}, above the reach of its mate", f"up to {height:.3f} mm"]
-            for name, height in figures["undercut_mm"].items()
-            if height > 0
-        ),
-        *(
             [f"root of the {name}", ridge_words(math.inf if height is None else height / 1000)]
             for name, height in figures["root_ridge_um"].items()
             if height is None or height > 1000 * RIDGE

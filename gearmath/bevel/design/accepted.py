@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Any
 
 from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.design.route import Designed, design
+from gearmath.bevel.design.start import USUAL, Teeth
 from gearmath.bevel.design.verdict import EdgeContact, verdict
 from gearmath.errors import ComputationError, InputError
 from gearmath.specs.bevel_set import BevelSet
@@ -18,8 +20,11 @@ _LONGER_PATH = {"drive": 35.0, "coast": 145.0}
 #: And with uniform depth the toe of a small pinion is undercut: the vertex lies so far from toe (0) to heel (1), and
 #: farther where that is not enough.
 _ALONG, _NEARER_TO_THE_HEEL = 0.5, (0.65, 0.68)
-#: Where teeth are undercut, also in a pair that runs, or no settings are found. [degree]
+#: Where teeth are undercut or too thin, or no settings are found. [degree]
 _PRESSURE_ANGLE = 22.5
+#: Or shallower teeth, which reach less deep into the pinion, leave it a wider root and both members more land; and with
+#: those a pinion that has more of the depth as its addendum.
+_SHALLOWER, _LONGER_PINION = Teeth(0.9), Teeth(0.9, 0.8)
 
 #: A pair, its figures, and the contact of both sides.
 _Judged = tuple[Designed, dict[str, Any], dict[str, Mesh]]
@@ -27,11 +32,13 @@ _Judged = tuple[Designed, dict[str, Any], dict[str, Mesh]]
 
 @dataclass(frozen=True)
 class Changed:
-    """Design data with other values for keys that the file leaves out, and where the vertex lies, from toe to heel."""
+    """Design data with other ``values`` for keys that the file leaves out, where the vertex lies, from toe to heel, and
+    the factors of the teeth."""
 
     data: DesignData
     values: dict[str, Any] = field(default_factory=dict)
     along: float = _ALONG
+    teeth: Teeth = USUAL
 
 
 def accepted(data: DesignData, name: str = "design data", given: BevelSet | None = None) -> _Judged:
@@ -40,43 +47,44 @@ def accepted(data: DesignData, name: str = "design data", given: BevelSet | None
     The figures tell under ``changed`` which keys that the file leaves out have other values than they start from.
     Raises InputError and ComputationError as :func:`design` and :func:`verdict` do, those of the first trial.
     """
-    try:
-        first = _judged(Changed(data), name, given)
-    except (InputError, ComputationError) as error:
-        changes = _on_edges(data) if isinstance(error, EdgeContact) else _not_cut(data, given)
-        if (found := next(_that_run(changes, name, given), None)) is None:
-            raise
-        return found
-    if not _is_undercut(first):
-        return first
-    others = _that_run(_not_cut(data, given), name, given)
-    return next((found for found in others if not _is_undercut(found)), first)
+    found, why = _tried(Changed(data), _on_edges(data), name, given)
+    if found is None and not all(isinstance(error, EdgeContact) for error in why):
+        for changed in _not_cut(data, given):
+            found, _ = _tried(changed, _with_paths(changed), name, given)
+            if found is not None:
+                break
+    if found is None:
+        raise why[0]
+    return found
+
+
+def _tried(
+    changed: Changed, on_edges: Iterator[Changed], name: str, given: BevelSet | None
+) -> tuple[_Judged | None, list[InputError | ComputationError]]:
+    """The pair of changed data or, where that one runs on edges, the first of others that is accepted; and what the
+    ones before were refused for."""
+    why: list[InputError | ComputationError] = []
+    for one in chain([changed], on_edges):
+        try:
+            return _judged(one, name, given), why
+        except (InputError, ComputationError) as error:
+            why.append(error)
+            if not isinstance(why[0], EdgeContact):
+                break
+    return None, why
 
 
 def _judged(changed: Changed, name: str, given: BevelSet | None) -> _Judged:
-    made = design(changed.data, name, given, changed.along)
+    made = design(changed.data, name, given, changed.along, changed.teeth)
     figures, runs = verdict(made)
-    return made, {"changed": changed.values, **figures}, runs
-
-
-def _that_run(changes: Iterator[Changed], name: str, given: BevelSet | None) -> Iterator[_Judged]:
-    """The pairs of changed data that can be made and run."""
-    for changed in changes:
-        try:
-            yield _judged(changed, name, given)
-        except (InputError, ComputationError):
-            continue
-
-
-def _is_undercut(found: _Judged) -> bool:
-    return any(found[1]["undercut_mm"].values())
+    parts, factors = vars(changed.teeth), figures["data_type_2"] or {}
+    teeth = {f"data_type_2.{key}": factors[key] for key, part in parts.items() if part != 1}
+    return made, {"changed": {**changed.values, **teeth}, **figures}, runs
 
 
 def _on_edges(data: DesignData) -> Iterator[Changed]:
     """What may help a pair that runs on its edges."""
-    path = _with_paths(data)
-    if path.values:
-        yield path
+    yield from _with_paths(Changed(data))
     free = [side for side in _LONGER_PATH if data.contact(side).position is None]
     if data.cutter.process == "face_hobbing" and free:
         for along in _NEARER_TO_THE_HEEL:
@@ -84,23 +92,29 @@ def _on_edges(data: DesignData) -> Iterator[Changed]:
 
 
 def _not_cut(data: DesignData, given: BevelSet | None) -> Iterator[Changed]:
-    """What may help a pair that cannot be cut."""
-    keys = [key for key in ("pressure_angle_drive", "pressure_angle_coast") if key not in data.model_fields_set]
-    if given is not None or len(keys) < 2:
+    """What may help a pair that cannot be cut, the least change first."""
+    if given is not None:
         return
-    values = dict.fromkeys(keys, _PRESSURE_ANGLE)
-    steeper = data.model_copy(update=values)
-    yield Changed(steeper, dict(values))
-    path = _with_paths(steeper)
-    if path.values:
-        yield Changed(path.data, {**values, **path.values})
+    angles = ("pressure_angle_drive", "pressure_angle_coast")
+    values = dict.fromkeys(angles, _PRESSURE_ANGLE)
+    steeper = None if data.model_fields_set & set(angles) else data.model_copy(update=values)
+    if steeper is not None:
+        yield Changed(steeper, values)
+    if data.data_type_1 is None and data.data_type_2 is None:
+        yield Changed(data, teeth=_SHALLOWER)
+        if steeper is not None:
+            yield Changed(steeper, values, teeth=_SHALLOWER)
+            yield Changed(steeper, values, teeth=_LONGER_PINION)
 
 
-def _with_paths(data: DesignData) -> Changed:
+def _with_paths(changed: Changed) -> Iterator[Changed]:
     """Paths nearer to the length of the tooth, where none is asked for."""
+    data = changed.data
     free = [side for side in _LONGER_PATH if _path_is_free(data.contact(side))]
-    sides = {side: data.contact(side).model_copy(update={"path_angle": _LONGER_PATH[side]}) for side in free}
-    return Changed(data.model_copy(update=sides), {f"{side}.path_angle": _LONGER_PATH[side] for side in free})
+    if free:
+        sides = {side: data.contact(side).model_copy(update={"path_angle": _LONGER_PATH[side]}) for side in free}
+        values = {**changed.values, **{f"{side}.path_angle": _LONGER_PATH[side] for side in free}}
+        yield replace(changed, data=data.model_copy(update=sides), values=values)
 
 
 def _path_is_free(asked: ContactRequest) -> bool:

@@ -14,9 +14,10 @@ from gearmath.bevel.design.backlash import completing_backlash, with_backlash
 from gearmath.bevel.design.completing import completing_pinion
 from gearmath.bevel.design.designed_flank import DesignedFlank
 from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_table, with_flank
+from gearmath.bevel.design.point_widths import with_point_widths
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
-from gearmath.bevel.design.start import blank_for, edge_radius
+from gearmath.bevel.design.start import USUAL, Teeth, blank_for, edge_radius
 from gearmath.bevel.design.tip_edges import with_edge, with_room_for_tips
 from gearmath.bevel.design.tip_heights import with_tip_heights
 from gearmath.bevel.slots import slots_of
@@ -44,12 +45,18 @@ class Designed:
     blank_data: BlankData
 
 
-def design(data: DesignData, name: str = "design data", given: BevelSet | None = None, along: float = 0.5) -> Designed:
+def design(
+    data: DesignData,
+    name: str = "design data",
+    given: BevelSet | None = None,
+    along: float = 0.5,
+    teeth: Teeth = USUAL,
+) -> Designed:
     """A pair from the data of a design, to the gear of a ``given`` set or to one of its own.
 
     ``name`` is the data's file in messages, ``along`` the place of a vertex of which none is asked for, from toe (0) to
-    heel (1). Raises InputError naming key, value and limit of what cannot be,
-    ComputationError where no settings are found.
+    heel (1), ``teeth`` what the factors of the teeth are changed by. Raises InputError naming key, value and limit of
+    what cannot be, ComputationError where no settings are found.
     """
     completing = data.pinion.cutting == "completing"
     if data.cutter.process == "face_hobbing" and not completing:
@@ -57,7 +64,7 @@ def design(data: DesignData, name: str = "design data", given: BevelSet | None =
             f"{name}: pinion.cutting = 'fixed_setting': with face_hobbing it must be 'completing', as both flanks are "
             "cut at once"
         )
-    blank_data, blank = blank_for(data, name)
+    blank_data, blank = blank_for(data, name, teeth)
     start = crown_gear_set(
         blank_data,
         Method("completing", alternating=True) if completing else _single(data, blank),
@@ -105,7 +112,8 @@ def _one_by_one(
     for side, own in OWN.items():
         flanks[side] = rounded_pinion(pinion_flank(start, own, requests[side], data.pinion.may_change), data.shop)
         found = with_flank(found, own, flanks[side].x)
-    return with_backlash(found, gear, backlash, start, data.shop.angle_step), dict(flanks)
+    found = with_backlash(found, gear, backlash, start, data.shop.angle_step)
+    return with_point_widths(found, "pinion"), dict(flanks)
 
 
 def _at_once(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from gearmath.bevel.blank import BevelBlank, blank_of
 from gearmath.bevel.slots import MemberSlots, slots_of
@@ -21,7 +22,18 @@ _MOST, _THINNEST = 0.15, 0.95
 TENTH, _OF_SLOT, _OF_CLEARANCE = 0.1, 0.4, 0.6
 
 
-def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
+@dataclass(frozen=True)
+class Teeth:
+    """Parts of the factors that a design starts from where nobody has chosen them."""
+
+    tooth_depth_factor: float = 1.0
+    mean_addendum_factor: float = 1.0
+
+
+USUAL = Teeth()
+
+
+def blank_for(data: DesignData, name: str, teeth: Teeth = USUAL) -> tuple[BlankData, BevelBlank]:
     """The data of the blank, completed, and the blank. Raises InputError naming key, value and limit."""
     given = data.blank_data(chosen_radius(data, name))
     blank = blank_of(given, name)
@@ -29,6 +41,8 @@ def blank_for(data: DesignData, name: str) -> tuple[BlankData, BevelBlank]:
         return given, blank
     values = given.model_dump(exclude_none=True)
     factors = dict(values["data_type_2"])
+    for key, part in vars(teeth).items():
+        factors[key] *= part
     for trial in range(_TRIALS):
         # a shorter pinion where thickness alone leaves it too thin a top land
         values["data_type_2"] = {**factors, "mean_addendum_factor": factors["mean_addendum_factor"] + trial * _SHORTER}

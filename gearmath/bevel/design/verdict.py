@@ -113,6 +113,8 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
                 f"{name}: top land of {land[place]:.3g} mm at the {place}: must be at least {LEAST_LAND * module:.3g} "
                 f"mm, {LEAST_LAND:g} of the mean normal module; thickness_factor or mean_addendum_factor must change"
             )
+    cuts = {name: undercut(made.pair.member(name), name) for name in lands}
+    _check_undercut(cuts)
     ridges = {name: ridge(made.pair.member(name), tooth_space(made.pair.member(name), name)) for name in lands}
     for name, height in ridges.items():
         if made.pair.member(name).process == "face_hobbing":
@@ -123,7 +125,7 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         "data_type_2": None if made.blank_data.data_type_2 is None else made.blank_data.data_type_2.model_dump(),
         "backlash_mm": {"asked": made.backlash, "found": mean_backlash(pinion, gear)},
         "top_land_mm": lands,
-        "undercut_mm": {name: undercut(made.pair.member(name), name) for name in lands},
+        "undercut_mm": cuts,
         "root_ridge_um": {name: 1000 * one if math.isfinite(one) else None for name, one in ridges.items()},
     }
     stepped = any(made.data.shop.model_dump().values())
@@ -141,6 +143,17 @@ def undercut(member: Member, name: str) -> float:
     points = np.concatenate([surface.point[surface.undercut] for surface in (space.concave, space.convex)])
     heights = over_reach(member, points[:, 2], np.hypot(points[:, 0], points[:, 1]))
     return float(np.max(heights, initial=0.0))
+
+
+def _check_undercut(heights: dict[str, float]) -> None:
+    """Refuse members that are undercut where their mates reach, by heights [mm]."""
+    for name, height in heights.items():
+        if height > 0:
+            raise InputError(
+                f"{name}: undercut reaches {height:.3g} mm above the lowest place that the tip of the mate reaches, "
+                "which must be at most 0 mm: larger pressure angles, a smaller tooth_depth_factor or "
+                "mean_addendum_factor, or more teeth are needed"
+            )
 
 
 def _check_tips(member: Member, name: str, height: float) -> None:

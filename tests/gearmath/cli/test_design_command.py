@@ -7,9 +7,12 @@ import re
 
 import pytest
 
+from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.pair import load_pair
+from gearmath.front.sets import GearSet
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import bundled, parse
+from tests.gearmath.bevel.design.family import mixed
 
 DATA = """
 title = "12 x 36"
@@ -179,3 +182,17 @@ def test_program_cuts_the_7x43_pinion_within_a_tenth_of_a_micrometer(command, tm
     status, out, err = command(*given)
     assert status == 0, err
     assert "7 of 7 spaces within 0.1 um" in out
+
+
+def test_far_side_of_a_cutter_for_one_flank_stays_off_the_other_one(command, refused, tmp_path):
+    """10 x 33: the widest point that passes the slot cuts 0.2 mm into the other flank, as programs are judged."""
+    pair = accepted(mixed(39))[0].pair
+    assert pair.pinion.convex.blade_point_width is None
+    path, program = tmp_path / "set.toml", tmp_path / "PINION.MPF"
+    GearSet(pair).save(path)
+    cut = ("nc", "cut", path, "--member", "pinion", "--spaces", "0", "-o", program)
+    assert command(*cut)[0] == 0
+    lines = path.read_text("utf-8").splitlines()
+    path.write_text("\n".join(line for line in lines if not line.startswith("blade_point_width")), "utf-8")
+    program.unlink()
+    refused("gouges the convex flank of space 0", *cut)

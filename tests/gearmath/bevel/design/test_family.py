@@ -10,7 +10,8 @@ import pytest
 
 from gearmath.bevel.contact.report import SIDES
 from gearmath.bevel.design.accepted import accepted
-from gearmath.bevel.design.verdict import LEAST_LAND, EdgeContact
+from gearmath.bevel.design.route import design
+from gearmath.bevel.design.verdict import LEAST_LAND, EdgeContact, undercut, verdict
 from gearmath.bevel.tooth import space_figures, tooth_space
 from gearmath.errors import ComputationError, InputError
 from gearmath.specs.design import DesignData
@@ -42,6 +43,7 @@ def test_draws_are_designed_as_asked_or_refused_in_a_sentence() -> None:
             second = figures[side]["second_derivative"]
             assert second["found"] == pytest.approx(second["asked"], rel=0.02), seed
             assert figures[side]["outcome"] == "interior contact", seed
+            assert figures["undercut_mm"] == {"pinion": 0, "gear": 0}, seed
             if asked.pinion.cutting == "fixed_setting" and asked.gear.generation == "generated":
                 residuals.append(figures[side]["ease_off_rms_um"])
         for land in figures["top_land_mm"].values():
@@ -82,10 +84,10 @@ def test_small_hobbed_pinion_has_its_contact_nearer_to_the_heel_where_its_path_i
 
 
 def test_undercut_pair_gets_larger_pressure_angles_where_none_are_asked_for() -> None:
-    """12 x 28 to a Formate gear: undercut at the heel of its concave flank with 20 degrees."""
-    made, figures, _ = accepted(mixed(36))
+    """8 x 53: undercut at the heel of its concave flank with 20 degrees."""
+    made, figures, _ = accepted(mixed(32))
     assert made.data.pressure_angle_drive == made.data.pressure_angle_coast == 22.5
-    assert figures["changed"]["pressure_angle_drive"] == figures["changed"]["pressure_angle_coast"] == 22.5
+    assert figures["changed"] == {"pressure_angle_drive": 22.5, "pressure_angle_coast": 22.5}
     with pytest.raises(InputError, match="undercut"):
         accepted(drawn(36, pressure_angle_drive=20.0))
 
@@ -106,16 +108,38 @@ def test_pair_that_runs_but_is_undercut_at_its_toe_gets_larger_pressure_angles_w
     }
     made, figures, _ = accepted(checked(data, DesignData, "12 x 36"))
     assert figures["changed"] == {"pressure_angle_drive": 22.5, "pressure_angle_coast": 22.5}
-    assert figures["undercut_mm"] == {"pinion": 0.0, "gear": 0.0}
     assert space_figures(made.pair.pinion, tooth_space(made.pair.pinion, "pinion"))["undercut_points"] == 0
-    kept, stated, _ = accepted(checked(data | {"pressure_angle_drive": 20.0}, DesignData, "20 degrees asked for"))
-    space = tooth_space(kept.pair.pinion, "pinion")
+    folded = design(checked(data, DesignData, "12 x 36 of 20 degrees"))
+    space = tooth_space(folded.pair.pinion, "pinion")
     # the fold lies above the reach of the mate at most as far as the lowest row before it
     radial, axial = np.hypot(*space.concave.point[-10, 0, :2]), space.concave.point[-10, 0, 2]
-    delta = math.radians(kept.pair.pinion.blank.pitch_angle)
+    delta = math.radians(folded.pair.pinion.blank.pitch_angle)
     height = radial * math.cos(delta) - axial * math.sin(delta)
-    blank = kept.pair.pinion.blank
-    assert 0 < stated["undercut_mm"]["pinion"] < height + blank.mean_dedendum - blank.clearance
+    blank = folded.pair.pinion.blank
+    assert 0 < undercut(folded.pair.pinion, "pinion") < height + blank.mean_dedendum - blank.clearance
+    with pytest.raises(InputError, match=r"^pinion: undercut reaches 0\.\d+ mm above .* at most 0 mm"):
+        verdict(folded)
+
+
+@pytest.mark.parametrize(
+    ("seed", "said", "factors"),
+    [
+        (13, "a ridge of", {"tooth_depth_factor": 0.9}),
+        (36, "undercut", {"tooth_depth_factor": 0.9, "mean_addendum_factor": 0.8}),
+    ],
+)
+def test_shallower_teeth_are_cut_where_the_usual_depth_leaves_a_ridge_or_undercut(
+    seed: int, said: str, factors: dict[str, float]
+) -> None:
+    """Each factor is that part of the one a design starts from, where none is given; it is told, and no flank folds."""
+    made, figures, _ = accepted(mixed(seed))
+    start = made.data.blank_data(made.data.cutter.cutter_radius).data_type_2
+    for key, part in factors.items():
+        assert figures["changed"][f"data_type_2.{key}"] == pytest.approx(part * getattr(start, key))
+    for name in ("pinion", "gear"):
+        assert space_figures(made.pair.member(name), tooth_space(made.pair.member(name), name))["undercut_points"] == 0
+    with pytest.raises(InputError, match=said):
+        verdict(design(mixed(seed)))
 
 
 def test_hobbed_pinion_to_a_formate_gear_is_cut_with_a_tilted_cutter_and_a_level_work_axis() -> None:
