@@ -28,6 +28,8 @@ def write_text(path: Path, text: str) -> None:
 def write_bytes(path: Path, content: bytes) -> None:
     """Write ``content`` to ``path`` in one step. Raises InputError if the place cannot be written."""
     try:
+        if path.exists() and not (path.is_file() or path.is_dir()):  # a file would take its place
+            raise InputError(f"{path}: cannot be written: is a device, name a file")
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error

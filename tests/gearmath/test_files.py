@@ -64,6 +64,14 @@ def test_target_that_cannot_be_written_is_named_and_nothing_is_left(tmp_path: Pa
     assert [entry.name for entry in tmp_path.iterdir()] == ["folder"]
 
 
+def test_a_device_is_not_replaced_by_a_file(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    with pytest.raises(InputError, match="pipe: cannot be written: is a device, name a file"):
+        write_text(tmp_path / "pipe", "text")
+    assert (tmp_path / "pipe").is_fifo()
+    assert [entry.name for entry in tmp_path.iterdir()] == ["pipe"]
+
+
 def test_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"absent: cannot be read: No such file"):
         read_text(tmp_path / "absent")

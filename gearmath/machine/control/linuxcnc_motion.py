@@ -161,6 +161,9 @@ class LinuxCncMotion:
                 refuse(self.name, line.number, 1, f"{letter}{words[letter]:g} is not understood here")
         if "G4" in codes and "P" not in words:
             refuse(self.name, line.number, 1, "G4 without a time P")
+        for code, what in (("G4", "a time"), ("G64", "a tolerance")):
+            if code in codes and words.get("P", 0.0) < 0:
+                refuse(self.name, line.number, 1, f"{code} P{words['P']:g}: {what} is not below 0")
         timed = self.control.modal.get("feed mode (G93 or G94)") == "G93" and self.control.modal.get("motion") == "G1"
         if timed and "F" not in words and any(axis in words for axis in _ALL):
             refuse(self.name, line.number, 1, "F is missing: every G93 block needs its own")

@@ -5,6 +5,10 @@ be able to stop at its end: it reaches no more than v_r = min(v, sqrt(a l)). Whe
 blend, the next one begins, and both add up, until the first stands. A blend takes no longer than the shorter block
 lasts, nor than the slower start: t = min(l/v_r of both, max v_r/a of both), so that it begins at min(v_r, a t), and no
 faster than 2 sqrt(a P/cos θ), where P is the tolerance of G64, and 2 θ the angle between both blocks in X Y Z.
+
+The block before a stop starts with all of its acceleration, not half of it. So the corner before it is left farther
+than P: with a share s of the blend gone, (1 - s)^2 of the way to the corner is left, and 2 s^2 of it is done behind it.
+Both are alike, and the path the farthest off, at s = sqrt(2) - 1; at a corner of two equal halves it is at s = 1/2.
 """
 
 from __future__ import annotations
@@ -18,6 +22,8 @@ from gearmath.specs.milling_machine import AxisLimits
 
 #: Cosines of θ from which on the tolerance counts.
 _STRAIGHT = 1e-6
+#: How much farther the corner before a last block is left than one of two equal halves.
+_BEFORE_STOP = (2.0 - math.sqrt(2.0)) ** 2 / 0.25
 
 
 def follow_parabolic(where: np.ndarray, asked: np.ndarray, limits: AxisLimits, corners: RoundedCorners) -> FollowedRun:
@@ -46,8 +52,10 @@ def follow_parabolic(where: np.ndarray, asked: np.ndarray, limits: AxisLimits, c
     if len(index) > 1:
         change = np.abs(np.diff(along, axis=0))
         time = speed / gain[:-1]
-        result.rounded[index[:-1]] = np.linalg.norm(change[:, :3], axis=1) * speed * time / 8
-        result.turned[index[:-1]] = change[:, 3:].max(axis=1) * speed * time / 8
+        way = speed * time / 8
+        way[-1] *= _BEFORE_STOP
+        result.rounded[index[:-1]] = np.linalg.norm(change[:, :3], axis=1) * way
+        result.turned[index[:-1]] = change[:, 3:].max(axis=1) * way
     return result
 
 

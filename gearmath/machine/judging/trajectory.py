@@ -112,7 +112,7 @@ def _runs(path: MachinePath) -> list[np.ndarray]:
     """Rows of the path from standstill to standstill; the first row has no known way to it."""
     count = len(path.rapid)
     still = np.zeros(count + 1, dtype=bool)
-    still[[0, 1, -1]] = True  # the first row is where the axes stand
+    still[:2] = still[-1] = True  # the first row is where the axes stand
     still[1:][path.rapid] = True  # after a rapid block
     still[:-1][path.rapid] = True  # and before one
     if len(path.measuring):

@@ -22,7 +22,7 @@ SHORTEST = 1e-4
 def check_feed(feed_mm_min: float) -> None:
     """Raises InputError for a feed that is not positive."""
     if not (math.isfinite(feed_mm_min) and feed_mm_min > 0):
-        raise InputError(f"feed = {feed_mm_min} mm/min: must be greater than 0")
+        raise InputError(f"feed = {feed_mm_min} mm/min: must be greater than 0, and finite")
 
 
 def block_seconds(axes: np.ndarray, machine: MillingMachine, feed_mm_min: float, tooth: np.ndarray) -> np.ndarray:

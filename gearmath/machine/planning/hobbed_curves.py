@@ -32,15 +32,18 @@ _MOST_BLOCKS = 200
 
 
 def check_counting(name: str, machine: MillingMachine) -> None:
-    """Raises InputError, naming the key, where A or C is a modulo axis."""
-    for axis in ("A", CUTTER_AXIS):
-        spec = getattr(machine.axes, axis)
-        if spec is not None and spec.modulo:
-            raise InputError(
-                f"{name}: blocks = poly: a block turns {axis} on through many turns, which no manual at hand promises "
-                f"of a modulo axis: write straight blocks, or declare {axis} in the control and in {machine.name} as "
-                f"one that counts on, axes.{axis}.modulo = false with its travel"
-            )
+    """Raises InputError, naming the keys, where A or C is a modulo axis."""
+    specs = [(axis, getattr(machine.axes, axis)) for axis in ("A", CUTTER_AXIS)]
+    modulo = [axis for axis, spec in specs if spec is not None and spec.modulo]
+    if modulo:
+        turning, keys = " and ".join(modulo), " and ".join(f"axes.{axis}" for axis in modulo)
+        where = "they are modulo axes" if modulo[1:] else "it is a modulo axis"
+        raise InputError(
+            f"{name}: blocks = poly: a block of face hobbing turns {turning} through many turns, and no manual at hand "
+            f"says what a control makes of that where {where}: write straight blocks, or where the control counts "
+            f"{turning} on, say so in the file of {machine.name}: modulo = false and travel in {keys}; "
+            "vertical_5axis_counting.toml is such a machine"
+        )
 
 
 @cache

@@ -38,9 +38,8 @@ def point_loop(
     yield f"DEF REAL {_A},{_BEFORE},{_TURN}[{teeth}],{_WAY}[{places},7]"
     yield from blocks.start(plan, room=room)
     yield from _tables(blocks, pattern)
-    x, y, _, a, b = blocks.axes(above_first(pattern))
-    yield f"G0 {x} {y} {a} {b}"
-    yield from blocks.lowered(blocks.length("Z", level))
+    yield from over_the_work(blocks, pattern, level)
+    *_, b = blocks.axes(pattern.places.end[0])
     yield "POINTS:"
     yield f"FOR {_TOOTH}=0 TO {teeth - 1}"
     yield f"FOR {_PLACE}=0 TO {places - 1}"
@@ -56,14 +55,17 @@ def point_loop(
     yield from blocks.end()
 
 
-def above_first(pattern: TouchPattern) -> np.ndarray:
-    """Where the probe goes down to the height of sideways motion: over the end of the first touch of space 0.
+def over_the_work(blocks: Blocks, pattern: TouchPattern, level: float) -> Iterator[str]:
+    """From home down to the height of sideways motion: over the end of the first touch of space 0.
 
     Not over its start, for the way to the first point must not be none; and with A beside that of every tooth: a run
     may begin at the tooth opposite, where half a turn would leave open which way A goes.
     """
     beside = _BESIDE * 2.0 * math.pi / (len(pattern.kind) - 1)
-    return pattern.places.end[0] + (pattern.turn[0] + beside) * np.array([0, 0, 0, 1, 0])
+    there = pattern.places.end[0] + (pattern.turn[0] + beside) * np.array([0, 0, 0, 1, 0])
+    x, y, _, a, b = blocks.axes(there)
+    yield f"G0 {x} {y} {a} {b}"
+    yield from blocks.lowered(blocks.length("Z", level))
 
 
 def _tables(blocks: Blocks, pattern: TouchPattern) -> Iterator[str]:
@@ -99,11 +101,7 @@ def _point(blocks: Blocks, name: str, plan: ProbingPlan, level: float, b: str) -
     yield start.modal(blocks.machine)
     yield from _angle(blocks)
     x, y, z, x_end, y_end, z_end = (f"{axis}={_WAY}[{_PLACE},{k}]" for k, axis in enumerate("XYZXYZ"))
-    if blocks.machine.one_sided:
-        yield from blocks.aside(f"{x} {y} {_to(blocks, _BEFORE)} {b}")
-        yield from blocks.aside(f"X=IC(0) Y=IC(0) {_to(blocks, _A)} B=IC(0)")
-    else:
-        yield from blocks.aside(f"{x} {y} {_to(blocks, _A)} {b}")
+    yield from blocks.to_point(f"{x} {y}", _to(blocks, _A), _to(blocks, _BEFORE), b)
     yield from blocks.guarded(z, APPROACH_FEED, level)
     several = plan.each > 1
     if several:

@@ -207,6 +207,14 @@ class Blocks:
         x, y, a, b = to.split(" ")
         yield from self._guarded(f"{x} {y} Z=IC(0) {a} {b}", POSITIONING_FEED, "on the way to a point", None)
 
+    def to_point(self, xy: str, a: str, before: str, b: str) -> Iterator[str]:
+        """Sideways to where a touch begins; by way of A ``before`` it where A comes from one side only."""
+        if self.machine.one_sided:
+            yield from self.aside(f"{xy} {before} {b}")
+            yield from self.aside(f"X=IC(0) Y=IC(0) {a} B=IC(0)")
+        else:
+            yield from self.aside(f"{xy} {a} {b}")
+
     def lowered(self, z: str) -> Iterator[str]:
         """Down from the home of Z to the height of sideways motion."""
         yield from self._guarded(f"X=IC(0) Y=IC(0) {z} {STILL}", POSITIONING_FEED, "on the way down from home", None)

@@ -313,12 +313,28 @@ def test_name_that_a_control_does_not_take_is_refused(name: str, small: str, gm_
     assert "the name of the program" in post(gm_post, small, tmp_path, 2, name)[1]
 
 
-def test_settings_are_not_written_over_by_their_program(small: str, gm_post: Path, tmp_path: Path) -> None:
-    settings = tmp_path / "PINION.settings"
-    settings.write_text(small, "ascii")
-    done = subprocess.run([gm_post, settings, "-o", settings], capture_output=True, text=True)
-    assert (done.returncode, settings.read_text("ascii")) == (2, small)
-    assert "is the settings file" in done.stderr
+def test_settings_are_not_written_over_by_a_program(small: str, gm_post: Path, tmp_path: Path) -> None:
+    """Neither their own, by another path to them, nor those of another member."""
+    for name in ("PINION", "GEAR"):
+        (tmp_path / f"{name}.settings").write_text(small, "ascii")
+    for there in ("PINION.settings", "./PINION.settings", tmp_path / "PINION.settings", "GEAR.settings"):
+        done = subprocess.run(
+            [gm_post, "PINION.settings", "-o", there], cwd=tmp_path, capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert "is a settings file, name another for the program" in done.stderr
+    assert {path.name: path.read_text("ascii") for path in tmp_path.iterdir()} == {
+        "PINION.settings": small,
+        "GEAR.settings": small,
+    }
+
+
+def test_a_place_that_cannot_be_written_to_is_refused(small: str, gm_post: Path, tmp_path: Path) -> None:
+    (tmp_path / "FOLDER.MPF").mkdir()
+    assert "is a folder or a device" in post(gm_post, small, tmp_path, 2, "FOLDER.MPF")[1]
+    assert "NOWHERE/CUT.MPF: No such file" in post(gm_post, small, tmp_path, 2, "NOWHERE/CUT.MPF")[1]
+    os.mkfifo(tmp_path / "PIPE.MPF")
+    assert "is a folder or a device" in post(gm_post, small, tmp_path, 2, "PIPE.MPF")[1]
 
 
 @pytest.fixture(scope="module")

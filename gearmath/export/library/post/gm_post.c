@@ -2,12 +2,14 @@
  * gm-post SETTINGS -o PROGRAM: the cutting program of a settings file that `gearmath export cnc SET.toml` wrote.
  *
  * The name of the program is that of its file, as with `gearmath nc cut`; so is its text, byte for byte. Status 0, or one
- * sentence and 2 where the settings file cannot be a program, 1 where the program cannot be written; then nothing is.
+ * sentence and 2 where the settings file cannot be a program or its place cannot be written to, 1 where memory or disk
+ * are full; then nothing is written.
  */
 #include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "post.h"
 
@@ -101,6 +103,24 @@ static void program_name(const char *file, char *name)
   if (reserved(name)) failed(file, "the name of the program is a reserved name of the operating system", 2);
 }
 
+/* What stands where the program goes may be an older one, no folder or device, and no settings, whatever its name. */
+static void check_place(const char *file)
+{
+  static const char head[] = "gm-post ";
+  char begin[sizeof head];
+  struct stat there;
+  size_t count;
+  FILE *stream;
+  if (stat(file, &there) != 0) return;
+  if (!S_ISREG(there.st_mode)) failed(file, "is a folder or a device, name a file for the program", 2);
+  stream = fopen(file, "rb");
+  if (!stream) return;
+  count = fread(begin, 1, sizeof head - 1, stream);
+  fclose(stream);
+  if (count == sizeof head - 1 && memcmp(begin, head, count) == 0)
+    failed(file, "is a settings file, name another for the program", 2);
+}
+
 int main(int count, char **arguments)
 {
   Job job;
@@ -112,7 +132,7 @@ int main(int count, char **arguments)
   memset(&job, 0, sizeof job);
   job.file = arguments[1];
   program_name(arguments[3], name);
-  if (strcmp(arguments[1], arguments[3]) == 0) failed(job.file, "is the settings file, name another for the program", 2);
+  check_place(arguments[3]);
   text = contents(arguments[1], &length);
   read_settings(&job, text, length);
   plan_passes(&job);
@@ -120,15 +140,19 @@ int main(int count, char **arguments)
   aside = grown(NULL, (int64_t)strlen(arguments[3]) + 8, 1);
   sprintf(aside, "%s.part", arguments[3]);
   stream = fopen(aside, "wb");
-  if (!stream) failed(aside, strerror(errno), 1);
+  if (!stream) {
+    const int why = errno;
+    free(aside);
+    failed(arguments[3], strerror(why), 2);
+  }
   unfinished = aside;
   write_program(&job, name, stream);
-  if (fflush(stream) != 0 || ferror(stream)) failed(aside, "cannot be written", 1);
-  fclose(stream);
+  k = fflush(stream) != 0 || ferror(stream);
+  if (fclose(stream) != 0 || k) failed(arguments[3], "cannot be written, the disk may be full", 1);
 #if defined(_WIN32)
   remove(arguments[3]); /* rename does not replace there */
 #endif
-  if (rename(aside, arguments[3]) != 0) failed(arguments[3], strerror(errno), 1);
+  if (rename(aside, arguments[3]) != 0) failed(arguments[3], strerror(errno), 2);
   unfinished = NULL;
   if (job.edited) fprintf(stderr, "gm-post: %s: was edited after the export, and the program says so\n", job.file);
   for (k = 0; k < job.roll_count; ++k) {

@@ -16,7 +16,7 @@ from gearmath.machine.planning.setup_facts import NOT_ON_METAL
 from gearmath.machine.planning.targets import APPROACH_FEED, MEASURING_FEED
 from gearmath.machine.writing.linuxcnc.dialect import message
 from gearmath.machine.writing.linuxcnc.probe_words import LinuxCncBlocks
-from gearmath.machine.writing.point_loop import above_first
+from gearmath.machine.writing.point_loop import over_the_work
 from gearmath.machine.writing.probe_words import ProbingPlan
 from gearmath.machine.writing.probing import TouchWriter, plan_of
 from gearmath.specs.calibration import Calibration
@@ -58,9 +58,7 @@ def _points(
     blocks: LinuxCncBlocks, pattern: TouchPattern, name: str, plan: ProbingPlan, level: float, room: Room
 ) -> Iterator[str]:
     yield from blocks.start(plan, room=room)
-    x, y, _, a, b = blocks.axes(above_first(pattern))
-    yield f"G0 {x} {y} {a} {b}"
-    yield from blocks.lowered(blocks.length("Z", level))
+    yield from over_the_work(blocks, pattern, level)
     targets = pattern.targets()
     for k in range(len(targets)):
         flank, row, col = targets.place(k)
@@ -77,14 +75,9 @@ def _point(
     blocks: LinuxCncBlocks, targets: Targets, k: int, place: str, plan: ProbingPlan, level: float
 ) -> Iterator[str]:
     """One point by itself: sideways, down, its touches, and up."""
-    machine = blocks.machine
     x, y, z, a, b = blocks.axes(targets.start[k])
-    if machine.one_sided:
-        before = targets.start[k] - np.array([0, 0, 0, machine.one_sided, 0])
-        yield from blocks.aside(f"{x} {y} {blocks.axes(before)[3]} {b}")
-        yield from blocks.aside(f"X=IC(0) Y=IC(0) {a} B=IC(0)")
-    else:
-        yield from blocks.aside(f"{x} {y} {a} {b}")
+    before = targets.start[k] - np.array([0, 0, 0, blocks.machine.one_sided, 0])
+    yield from blocks.to_point(f"{x} {y}", a, blocks.axes(before)[3], b)
     yield from blocks.guarded(z, APPROACH_FEED, level)
     end = " ".join(blocks.axes(targets.end[k])[:3])
     several = plan.each > 1

@@ -14,10 +14,11 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.planning.cut_plan import cutting_plan
 from gearmath.machine.planning.rounding import path_share
 from gearmath.machine.writing import cutting
-from gearmath.machine.writing.linuxcnc.cutting import program_of, tools_of, turned_at_corners
+from gearmath.machine.writing.linuxcnc.cutting import LEFT_BY, path_share_of, program_of, tools_of, turned_at_corners
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.toml import bundled
+from tests.gearmath.control.linuxcnc.samples import farthest
 
 if TYPE_CHECKING:
     from conftest import Start
@@ -73,3 +74,8 @@ def test_the_flanks_are_within_the_tolerance_of_the_path_mode(live: Start) -> No
     meant = mill_member(commanded, gear, "gear", machine).deviation
     assert np.abs(left - meant).max() < allowed + PRINTED
     assert np.abs(left).max() < plan.job.tolerance + allowed + PRINTED
+    # the header states what corners that are left farther than P would do
+    assert path_share_of(plan) == pytest.approx(LEFT_BY * allowed)
+    ends = np.array([[float(word[1:]) for word in blocks[k - 1].split()[1:6]] for k in cut])
+    of_roll = np.isin(rows[:, 6].astype(int), cut[2:])
+    assert linear < farthest(rows[of_roll, 1:6], ends) < LEFT_BY * linear

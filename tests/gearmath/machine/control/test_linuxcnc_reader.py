@@ -111,6 +111,8 @@ def test_times_are_those_of_feed_and_inverse_time() -> None:
         ("G0 X=1", "a number is expected"),
         ("G38.3 Z1 F1", "probing without the tool PROBE"),
         ("G55\nG0 X1", "G55 is active"),
+        ("G64 P-0.01", "G64 P-0.01: a tolerance is not below 0"),
+        ("G4 P-1", "G4 P-1: a time is not below 0"),
         ("G0 X1 " + " " * 260, "characters"),
     ],
 )

@@ -140,6 +140,24 @@ def test_exact_stops_take_longer_than_a_tolerance(programs):
     assert stops.path_error_um == 0.0
 
 
+def test_linuxcnc_leaves_the_corner_before_a_stop_farther_by_the_whole_acceleration_behind_it():
+    """Blends taken step by step: half of the acceleration before and behind the corners, but all of it at the last."""
+    bend, tolerance, half = 0.02, 1e-2, A / 2
+    heading = bend * np.array([-1.5, -0.5, 0.5, 1.5])
+    ends = 10.0 * np.cumsum(np.stack([np.cos(heading), np.sin(heading)], axis=1), axis=0)
+    got = run(line((0, 0), *ends), how=follow_parabolic, corners=RoundedCorners(tolerance, tolerance))
+    for left, speed, behind in zip(got.rounded, got.speed[1:-1], (half, half, A), strict=True):
+        t = np.linspace(0.0, speed / half, 10001)
+        before_corner, past_corner = (speed - half * t) ** 2 / (2 * half), behind * t**2 / 2
+        off = np.minimum(before_corner, past_corner).max() * math.sin(bend)
+        assert left == pytest.approx(off, rel=5e-3)
+
+
+def test_a_program_without_motion_takes_no_time():
+    done = trajectory(execute("; nothing moves\nM30\n", "NONE"), MACHINE)
+    assert (done.total_seconds, done.corners) == (0.0, 0)
+
+
 def test_linuxcnc_reads_no_polynomials(programs):
     with pytest.raises(InputError, match=r"^line \d+ is a block of POLY: LinuxCNC, which .* has, reads none$"):
         of(programs["poly"], kind="linuxcnc")

@@ -27,6 +27,7 @@ from tests.gearmath.machine.milling.flank_borders import left_at_borders
 from tests.gearmath.machine.writing.polynomial_text import along_blocks, written_again, written_in
 
 MODULO = load_milling_machine(bundled("vertical_5axis.toml"))
+COUNTING = load_milling_machine(bundled("vertical_5axis_counting.toml"))
 HOBBED = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
 MEMBERS = ("pinion", "gear")
 #: Five decimals of mm and six of degrees, with the two more that coefficients have; a degree as so many mm at the work.
@@ -34,13 +35,10 @@ IN_MM = np.array([1.0, 1.0, 1.0, *[math.radians(1.0) * 100.0] * 3])
 
 
 def counting(values=18, **axis):
-    """The bundled machine with A and C as axes that count on, and blocks of so many values."""
-    axes = {
-        name: getattr(MODULO.axes, name).model_copy(update={"modulo": False, "travel": (-720.0, 1e6)} | axis)
-        for name in "AC"
-    }
-    control = MODULO.control.model_copy(update={"polynomial_values": values})
-    return MODULO.model_copy(update={"axes": MODULO.axes.model_copy(update=axes), "control": control})
+    """The bundled machine whose A and C count on, with blocks of so many values."""
+    axes = {name: getattr(COUNTING.axes, name).model_copy(update=axis) for name in "AC"}
+    control = COUNTING.control.model_copy(update={"polynomial_values": values})
+    return COUNTING.model_copy(update={"axes": COUNTING.axes.model_copy(update=axes), "control": control})
 
 
 MACHINES = {3: counting(), 5: counting(30)}
@@ -195,13 +193,16 @@ def test_feeds_keep_speed_acceleration_and_jerk_of_all_axes():
     assert done.feed_seconds == pytest.approx(sum(seconds for _, seconds in blocks), rel=0.05)
 
 
-@pytest.mark.parametrize(("axis", "values"), [("A", 18), ("C", 18), ("", 17)])
-def test_a_machine_that_may_not_take_it_is_refused_with_the_key_to_change(axis, values):
+@pytest.mark.parametrize(("modulo", "values"), [("A", 18), ("C", 18), ("AC", 18), ("", 17)])
+def test_a_machine_that_may_not_take_it_is_refused_with_the_keys_to_change(modulo, values):
     machine = counting(values)
-    if axis:
-        axes = machine.axes.model_copy(update={axis: getattr(MODULO.axes, axis)})
+    if modulo:
+        axes = machine.axes.model_copy(update={axis: getattr(MODULO.axes, axis) for axis in modulo})
         machine = machine.model_copy(update={"axes": axes})
-        wanted = rf"^gear: blocks = poly: a block turns {axis} on .* axes\.{axis}\.modulo = false with its travel$"
+        turning, keys = " and ".join(modulo), " and ".join(rf"axes\.{axis}" for axis in modulo)
+        wanted = (
+            rf"block of face hobbing turns {turning} through .* modulo = false and travel in {keys}; vertical_5axis_c"
+        )
     else:
         wanted = r"^control\.polynomial_values = 17 of .*: cubic blocks of 6 axes have 18 values"
     with pytest.raises(InputError, match=wanted):
