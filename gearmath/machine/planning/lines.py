@@ -18,9 +18,10 @@ _COLUMNS = 801
 #: Points of a curve that has others where they are asked for.
 _EVEN = 101
 #: The points go beyond the flank by this part of it: a machine that is off its settings cuts the flank's edges at
-#: other cradle rotations, and must not find a long block of the overrun there.
+#: other cradle rotations, and must not find a long block of the overrun there. The lowest row along the tooth is where
+#: the mate reaches: below it the flank may end in an undercut before the blade does, which has the row of its foot.
 _BEYOND = 0.02
-_UP, _ACROSS = (0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BEYOND)
+_UP, _ACROSS = (0.0, 0.25, 0.5, 0.75, 1.0, 1 + _BEYOND), (-_BEYOND, 0.0, 1.0, 1 + _BEYOND)
 #: At toe and heel they go this part of the working depth below it, as far as the blade reaches.
 _DEEP = 0.3
 #: Nearer to the end of the blade than this [mm] a point belongs to the fillet.

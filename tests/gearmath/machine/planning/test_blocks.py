@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.flank import Grid, blank_grid
 from gearmath.errors import InputError
 from gearmath.machine.planning.blocks import ROUNDING, roll_nodes
 from gearmath.machine.planning.path import Cut, below_the_flank, flank_points, roll_range
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.toml import bundled
+from tests.gearmath.bevel.design.family import mixed
 
 HEIGHT = 500.0
 CUTS = [("pinion", 0), ("pinion", 1), ("gear", 0)]
@@ -219,6 +222,14 @@ def test_every_block_keeps_the_tolerance_and_uses_it(gear_set, deviations, membe
     left = deviations(member, number)(nodes[:-1], nodes[1:])
     assert left.max() <= 1.02 * (tolerance - ROUNDING)
     assert np.median(left) >= 0.9 * (tolerance - ROUNDING)
+
+
+def test_blocks_keep_the_tolerance_where_the_flank_ends_in_an_undercut_before_the_blade_does(deviations):
+    """A design of 7 teeth: its foot lies beyond the undercut, and no line of it holds the blocks back at the toe."""
+    spec = accepted(mixed(31))[0].pair.pinion
+    nodes = roll_nodes(spec, Cut.of(spec, "pinion")[0], 1e-4, HEIGHT)
+    left = deviations("pinion", 0, bevel_set=SimpleNamespace(member=lambda _: spec))(nodes[:-1], nodes[1:])
+    assert left.max() <= 1.02 * (1e-4 - ROUNDING)
 
 
 @each_cut

@@ -398,7 +398,7 @@ def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
         ({"spindle_rpm": 1.0}, r"^HOB: spindle speed = 1\.0 rpm"),
         ({"spindle_rpm": 0.0}, r"^gear: spindle speed = 0\.0 rpm: must be greater than 0$"),
         ({"spindle_rpm": math.nan}, r"^gear: spindle speed = nan rpm: must be greater than 0$"),
-        ({"feed": 0.0}, r"^feed = 0\.0 mm/min: must be greater than 0$"),
+        ({"feed": 0.0}, r"^feed = 0\.0 mm/min: must be greater than 0, and finite$"),
         (
             {"feed": 1e-4},
             r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$",
