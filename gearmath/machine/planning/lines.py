@@ -11,7 +11,7 @@ import numpy as np
 from gearmath.bevel.flank import Grid
 from gearmath.bevel.method import blade_sections
 from gearmath.kernels import kernel
-from gearmath.machine.planning.path import below_the_flank, flank_points
+from gearmath.machine.planning.path import below_the_flank, flank_points, points_found
 from gearmath.specs.bevel_set import SIDES, Member
 
 _COLUMNS = 801
@@ -132,10 +132,10 @@ def _curves(member: Member) -> Iterator[Grid]:
 
 
 def flank_row(member: Member, flank: str, grid: Grid) -> GeneratedLines:
-    """The points of one row that lie on the blade."""
+    """The points of one row that lie on the blade; none where an undercut takes away the whole row."""
     spec, side = member.flank(flank), SIDES[flank]
     section = blade_sections(spec.model_copy(update={"design": None}), side)["main"]
-    points = flank_points(member, flank, grid)
+    points = points_found(member, flank, grid)
     u = points.contact[:, 0]
     if section.arc is None:
         on_blade = (u > section.lower + _TIP) & (u < section.upper)

@@ -53,7 +53,16 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
     """Points that the main section of the blade cuts with the settings as they are, for every cutting method.
 
     Those without a solution are left out: the corners of a grid may lie beyond what the blade reaches.
+    Raises InputError where that is so everywhere.
     """
+    points = points_found(member, flank, grid)
+    if not len(points.contact):
+        raise InputError(f"{flank} flank: the equation of meshing has no solution anywhere on the flank")
+    return points
+
+
+def points_found(member: Member, flank: str, grid: Grid) -> FlankPoints:
+    """The same for a row that may lie beyond the flank altogether: none then."""
     spec = member.flank(flank)
     how = cut_generation_of(member, flank)
     section = blade_sections(spec.model_copy(update={"design": None}), SIDES[flank])["main"]
@@ -64,8 +73,6 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
         points = _row_points(how, section, axial, radial)
         residual = points.residual
     found = residual <= TOLERANCE
-    if not found.any():
-        raise InputError(f"{flank} flank: the equation of meshing has no solution anywhere on the flank")
     return FlankPoints(points.contact[found], points.point[found], points.normal[found])
 
 
