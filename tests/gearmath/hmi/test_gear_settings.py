@@ -146,7 +146,7 @@ def test_files_to_choose_are_of_their_kind_and_those_of_the_folder_come_first(tm
     assert SET in sets
     for other in ("design_7x43.toml", "vertical_5axis.toml", "probe.toml", "hobbing_plewes.toml"):
         assert other not in sets
-    assert list(files_of("machine", tmp_path)) == ["vertical_5axis.toml"]
+    assert list(files_of("machine", tmp_path)) == ["vertical_5axis.toml", "vertical_5axis_counting.toml"]
     assert list(files_of("calibration", tmp_path)) == ["probe.toml"]
     assert {"hobbing_plewes.toml", "lathe_example.toml"} <= files_of("hobber", tmp_path).keys()
 
