@@ -26,6 +26,7 @@ from gearmath.machine.writing.words import check_name
 from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.toml import find
+from gearmath.specs.touch_csv import planned_touches
 
 #: Lines of a program that the page shows from its beginning.
 SHOWN = 2000
@@ -93,9 +94,11 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
 
 def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Progress) -> MilledProgram:
     """Mill a cutting program of the folder: on a machine without errors, and on that of the file ``shop``."""
-    content = read(folder, name)
+    text = readable(decoded(read(folder, name), name))
+    if planned_touches(text):
+        raise InputError(f"{name}: is a probing program: only a cutting program can be milled")
     member = load_set(choice.gear_set).member(choice.member)
-    program = Program(member, load_machine(choice.machine), name, readable(decoded(content, name)))
+    program = Program(member, load_machine(choice.machine), name, text)
     progress.total = 2 * member.teeth * (1 if shop is None else 2)
     largest = float(abs(program.mill(None, progress).deviation).max())
     of_shop = None if shop is None else float(abs(program.mill(load_shop(shop), progress).deviation).max())
