@@ -183,7 +183,7 @@ def test_the_teeth_that_a_page_offers_are_those_of_the_chosen_member(tmp_path: P
     assert [teeth(Choice(member=name)) for name in ("pinion", "gear")] == [12, 36]
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("[pinion]\nteeth = 0\n", "utf-8")
-    with pytest.raises(InputError, match="wrong.toml"):
+    with pytest.raises(InputError, match=r"wrong\.toml"):
         teeth(Choice(gear_set=str(wrong)))
 
 
