@@ -109,9 +109,15 @@ def _place(text: Text, cells: tuple[str, ...]) -> str:
     return text("measure.place_of", **{**values, "member": blocks.member_name(text, cells[0]), "flank": flank})
 
 
-def _why_not(text: Text, task: MeasuringTask, missing: str) -> str:
-    """Why no run can begin: one goes on, or what is ``missing``; empty where it can."""
-    return text("measure.goes_on") if task.is_going_on else missing
+def _why_not(shared: Shared, text: Text, missing: str) -> str:
+    """Why no run can begin: one goes on, what is ``missing``, or there is no connection; empty where it can."""
+    assert shared.link is not None
+    assert shared.measuring is not None
+    if shared.measuring.is_going_on:
+        return text("measure.goes_on")
+    if missing or shared.link.view.connected:
+        return missing
+    return text("measure.not_connected", control=control_name(text, shared))
 
 
 def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> Callable[[], None]:
@@ -147,7 +153,7 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
         found = [one.name for one in programs_work.programs(shared.folder)]
         if names.options != found:
             names.set_options(found, value=chosen["name"] if chosen["name"] in found else None)
-        acting.allow(_why_not(text, task, text("measure.no_program") if not found else ""), reason, start)
+        acting.allow(_why_not(shared, text, text("measure.no_program") if not found else ""), reason, start)
         check.look(None if link.view.is_stale else link.view.probe)
         by_hand.visible = check.state == "unknown"
         said.show(text(f"measure.check_{check.state}"), "good" if check.is_done else "info")
@@ -175,7 +181,7 @@ def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
         if shown[0] != found:
             shown[0] = found
             draw(found)
-        acting.allow(_why_not(text, task, "") if found else "", reason, *buttons)
+        acting.allow(_why_not(shared, text, "") if found else "", reason, *buttons)
 
     def draw(found: list[UnfinishedRun]) -> None:
         place.clear()
@@ -222,6 +228,6 @@ def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[]
         found = {run: f"{run}: {program}" for run, program in complete_runs(shared.store).items()}
         if runs.options != found:
             runs.set_options(found, value=chosen["run"] if chosen["run"] in found else None)
-        acting.allow(_why_not(text, task, text("measure.no_complete") if not found else ""), reason, start)
+        acting.allow(_why_not(shared, text, text("measure.no_complete") if not found else ""), reason, start)
 
     acting.watch(text, look, 4 * widgets.LOOK)
