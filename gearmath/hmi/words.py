@@ -48,7 +48,7 @@ def connection(text: Text, link: ControlLink | None) -> tuple[str, str]:
     if view.connected and not view.is_stale:
         return text("machine.connected"), "good"
     if view.age is None:
-        return text("machine.connecting"), "error" if view.problem else "info"
+        return (text("machine.never"), "error") if view.problem else (text("machine.connecting"), "info")
     return text("machine.silent" if view.connected else "machine.lost", age=duration(text, view.age)), "error"
 
 
