@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import http.client
 import json
-import os
 import re
 import subprocess
 import sys
@@ -16,7 +15,6 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from gearmath.cli import main
-from gearmath.control.store import MeasurementStore
 from tests.gearmath.hmi.conftest import Operator, Served
 
 _ROUTES = """
@@ -244,21 +242,6 @@ def test_a_file_that_is_no_store_is_refused_at_the_start_and_stays_as_it_is(
         assert re.search(rf"{name}: .*measurement store", said)
         assert len(said.splitlines()) == 1
     assert (tmp_path / "notes.db").read_text() == "not a store"
-
-
-def test_a_store_that_cannot_be_written_is_refused_at_the_start(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """What the right to write is, the operating system says; root has it everywhere, so its answer is given here."""
-    store = tmp_path / "runs.db"
-    MeasurementStore.open(store).close()
-    store.chmod(0o444)
-    allowed = os.access
-    monkeypatch.setattr("os.access", lambda path, mode: Path(path) != store and allowed(path, mode))
-    with pytest.raises(SystemExit) as ended:
-        main(["hmi", "--port", "0", "--store", str(store)])
-    assert ended.value.code == 2
-    assert capsys.readouterr().err.strip() == f"gearmath: {store}: cannot be written: Permission denied"
 
 
 @pytest.mark.parametrize(
