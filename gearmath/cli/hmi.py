@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,6 +45,8 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
 
     check_place(store_file)
     if store_file.exists():
+        if not os.access(store_file, os.W_OK):  # a run would find out when the machine stands ready
+            raise InputError(f"{store_file}: cannot be written: Permission denied")
         MeasurementStore.open(store_file, create=False).close()
     alarms = store_file.with_name(f"{store_file.stem}_alarms.json")
     shared = Shared(store_file, book=AlarmBook(alarms))

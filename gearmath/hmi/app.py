@@ -16,8 +16,10 @@ from nicegui import ui
 from gearmath.errors import InputError
 from gearmath.hmi import shell
 from gearmath.hmi.gate import LOGIN, LOOPBACK, Gate
+from gearmath.hmi.plain_page import PlainErrors
 from gearmath.hmi.shell import PAGES
 from gearmath.hmi.state import Shared
+from gearmath.hmi.visitor import is_dark, language_of
 
 #: How long the server keeps a page whose browser is gone. [s]
 _RECONNECT = 30.0
@@ -53,8 +55,8 @@ def _register(shared: Shared, name: str) -> None:
         # language and look belong to one browser, the page of NiceGUI to all of them
         client = ui.context.client
         client.page = copy(client.page)
-        client.page.language = "de" if shell.language_of(request) == "de" else "en-US"
-        client.page.dark = shell.is_dark(request)
+        client.page.language = "de" if language_of(request) == "de" else "en-US"
+        client.page.dark = is_dark(request)
         shell.show(shared, name, build, request)
 
 
@@ -69,7 +71,7 @@ def serve(shared: Shared, host: str, port: int, show: Callable[[str], object]) -
     port = listening.getsockname()[1]
     token = secrets.token_urlsafe(24)
     names = dict.fromkeys((*LOOPBACK, f"[{host}]" if ":" in host else host))
-    gate = Gate(application(shared), token, [f"{name}:{port}" for name in names], f"gearmath_{port}")
+    gate = Gate(PlainErrors(application(shared)), token, [f"{name}:{port}" for name in names], f"gearmath_{port}")
     # its own lines would show addresses, and with them the token
     server = uvicorn.Server(uvicorn.Config(gate, log_level="warning", access_log=False, ws="websockets-sansio"))
     show(f"http://{f'[{host}]' if ':' in host else host}:{port}{LOGIN}?token={token}")

@@ -7,15 +7,12 @@ no page or from one of this server, and has the token in a cookie. ``/login?toke
 from __future__ import annotations
 
 import hmac
-from collections.abc import Awaitable, Callable, Iterable, MutableMapping
+from collections.abc import Iterable, MutableMapping
 from http.cookies import CookieError, SimpleCookie
 from typing import Any
 from urllib.parse import parse_qs, unquote
 
-Scope = MutableMapping[str, Any]
-Receive = Callable[[], Awaitable[MutableMapping[str, Any]]]
-Send = Callable[[MutableMapping[str, Any]], Awaitable[None]]
-AsgiApp = Callable[[Scope, Receive, Send], Awaitable[None]]
+from gearmath.hmi.plain_page import AsgiApp, Receive, Scope, Send, answer
 
 LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 LOGIN = "/login"
@@ -34,7 +31,6 @@ _HEADERS = (
 )
 #: A page of our own that goes on, not a redirect: a browser sends a strict cookie only where its own site leads.
 _WELCOME = b'<!doctype html><meta charset="utf-8"><meta http-equiv="refresh" content="0;url=/"><title>gearmath</title>'
-_REFUSED = "gearmath: refused: {why}: open the address that 'gearmath hmi' showed when it started\n"
 
 
 class Gate:
@@ -56,25 +52,26 @@ class Gate:
             await self._log_in(scope, send)
             return
         if why is None and not self._is_known(headers):
-            why = "no token"
+            why = "plain.no_token"
         if why is None and self._names_token(scope):
-            why = "the token has no place in this address"
+            why = "plain.token_in_address"
         if why is None:
             await self.app(scope, receive, _guarded(send) if scope["type"] == "http" else send)
         else:
             await _refuse(scope, receive, send, why)
 
     def _refusal(self, scope: Scope, headers: list[tuple[bytes, bytes]]) -> str | None:
+        """The key of the sentence that says why; None where nothing speaks against it."""
         if scope["type"] not in ("http", "websocket"):
-            return "unknown kind of request"
+            return "plain.unfit"
         hosts = [value.decode("latin-1").lower() for name, value in headers if name == b"host"]
         if len(hosts) != 1 or hosts[0] not in self._hosts:
-            return "foreign host"
+            return "plain.foreign_host"
         origins = [value.decode("latin-1").lower() for name, value in headers if name == b"origin"]
         if any(origin not in self._origins for origin in origins):
-            return "foreign origin"
+            return "plain.foreign_origin"
         if any(ord(letter) < 0x20 or ord(letter) == 0x7F for letter in scope["path"]):
-            return "control characters in the address"
+            return "plain.control_characters"
         return None
 
     def _names_token(self, scope: Scope) -> bool:
@@ -98,7 +95,7 @@ class Gate:
     async def _log_in(self, scope: Scope, send: Send) -> None:
         query = parse_qs(scope["query_string"].decode("latin-1"), max_num_fields=10) if _short(scope) else {}
         if scope["method"] != "GET" or not self._is_token(query.get("token", [""])[0]):
-            await _answer(send, 403, b"text/plain; charset=utf-8", _REFUSED.format(why="wrong token").encode())
+            await _answer(send, 403, *answer(scope, "plain.wrong_token"))
             return
         cookie = f"{self._cookie}={self._token}; HttpOnly; SameSite=Strict; Path=/"
         await _answer(send, 200, b"text/html; charset=utf-8", _WELCOME, (b"set-cookie", cookie.encode()))
@@ -126,7 +123,7 @@ async def _refuse(scope: Scope, receive: Receive, send: Send, why: str) -> None:
         await receive()  # the request itself; closing before accepting is answered as 403
         await send({"type": "websocket.close", "code": 1008, "reason": why})
     else:
-        await _answer(send, 403, b"text/plain; charset=utf-8", _REFUSED.format(why=why).encode())
+        await _answer(send, 403, *answer(scope, why))
 
 
 async def _answer(send: Send, status: int, kind: bytes, body: bytes, *more: tuple[bytes, bytes]) -> None:

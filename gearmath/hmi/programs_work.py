@@ -23,7 +23,10 @@ from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
+from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.toml import find
+from gearmath.specs.touch_csv import planned_touches
 
 #: Lines of a program that the page shows from its beginning.
 SHOWN = 2000
@@ -91,20 +94,31 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
 
 def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Progress) -> MilledProgram:
     """Mill a cutting program of the folder: on a machine without errors, and on that of the file ``shop``."""
-    content = read(folder, name)
+    text = readable(decoded(read(folder, name), name))
+    if planned_touches(text):
+        raise InputError(f"{name}: is a probing program: only a cutting program can be milled")
     member = load_set(choice.gear_set).member(choice.member)
-    program = Program(member, load_machine(choice.machine), name, readable(decoded(content, name)))
+    program = Program(member, load_machine(choice.machine), name, text)
     progress.total = 2 * member.teeth * (1 if shop is None else 2)
     largest = float(abs(program.mill(None, progress).deviation).max())
     of_shop = None if shop is None else float(abs(program.mill(load_shop(shop), progress).deviation).max())
     return MilledProgram(name, largest, of_shop, program.faults())
 
 
+def teeth(choice: Choice) -> int:
+    """How many the chosen member has, by its file, which need not be a pair that can be cut. Raises InputError."""
+    return load_bevel_set(find(choice.gear_set)).member(choice.member).teeth
+
+
 def programs(folder: Path) -> list[ListedProgram]:
-    """The programs of a folder whose names a control takes, the newest first."""
+    """The programs of a folder whose names a control takes, the newest first. Raises InputError."""
     found = []
     suffixes = {".SPF", *(one.suffix for one in known())}
-    for path in (one for one in folder.iterdir() if one.suffix in suffixes):
+    try:
+        paths = [one for one in folder.iterdir() if one.suffix in suffixes]
+    except OSError as error:
+        raise InputError(f"{folder.name}: cannot be read: {error.strerror}") from error
+    for path in paths:
         try:
             _kept_name(path.name)
             status = path.stat()
@@ -120,6 +134,14 @@ def programs(folder: Path) -> list[ListedProgram]:
 def read(folder: Path, name: str) -> bytes:
     """A program of the folder. Raises InputError for a name that a control does not take, or leads elsewhere."""
     return read_bytes(folder / _kept_name(name))
+
+
+def stamp(folder: Path, name: str) -> int:
+    """When a program was written [ns], 0 for one that is gone: what was found of it holds while that is the same."""
+    try:
+        return (folder / name).stat().st_mtime_ns
+    except OSError:
+        return 0
 
 
 def preview(folder: Path, name: str) -> tuple[str, int]:

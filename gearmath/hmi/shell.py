@@ -8,9 +8,11 @@ from importlib import resources
 from nicegui import ui
 from starlette.requests import Request
 
+from gearmath.errors import ComputationError, InputError
 from gearmath.hmi import widgets
 from gearmath.hmi.messages import LANGUAGES, Text
 from gearmath.hmi.state import Shared
+from gearmath.hmi.visitor import LANGUAGE, LOOK, is_dark, language_of
 from gearmath.hmi.words import connection, run_strip
 
 #: The pages in the order of the work: name (of the module, the address and the table of messages), Material icon.
@@ -26,21 +28,6 @@ PAGES = {
 }
 #: How often the server lets the browser know that it is there. [s]
 _BEAT = 1.0
-LANGUAGE, LOOK = "gearmath_language", "gearmath_look"
-
-
-def language_of(request: Request) -> str:
-    """What the operator chose, or the first language of the browser that there is."""
-    chosen = request.cookies.get(LANGUAGE, "")
-    if chosen in LANGUAGES:
-        return chosen
-    asked = [part.split(";")[0].strip()[:2].lower() for part in request.headers.get("accept-language", "").split(",")]
-    return next((one for one in asked if one in LANGUAGES), "en")
-
-
-def is_dark(request: Request) -> bool:
-    """Whether the operator chose the dark look."""
-    return request.cookies.get(LOOK) == "dark"
 
 
 def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], request: Request) -> None:
@@ -75,7 +62,10 @@ def show(shared: Shared, name: str, build: Callable[[Shared, Text], None], reque
     beat = ui.label("0").classes("gm-beat").props('aria-hidden="true"')
     ui.timer(_BEAT, lambda: beat.set_text(str(int(beat.text) + 1)))
     with ui.element("div").classes("gm-main").props("inert"):
-        build(shared, text)
+        try:
+            build(shared, text)
+        except (InputError, ComputationError) as error:
+            widgets.Message(text.quoted(error), "error")
         with ui.element("footer").classes("gm-wide"):
             widgets.note(text("shell.foreign"))
 

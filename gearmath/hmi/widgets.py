@@ -12,8 +12,7 @@ from nicegui import Client, ui
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.messages import Text
 from gearmath.hmi.numbers import parsed
-from gearmath.hmi.state import Shared
-from gearmath.hmi.work import Work
+from gearmath.hmi.work import BROKEN, Work
 
 #: How often a page looks at the state of the server. [s]
 LOOK = 0.25
@@ -115,9 +114,20 @@ class NumberField:
         self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
         self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
         self.field.props["suffix"] = unit
-        self.field.props["hint"] = text("shell.range", low=f"{low:.10g}", high=f"{high:.10g} {unit}".rstrip())
+        self._hint()
         self.value, _ = self._parsed(typed)
         self.field.on("change", lambda: self._leave())
+
+    def limit(self, high: float) -> None:
+        """Another upper limit, by which what stands in the field is judged anew."""
+        if high != self._high:
+            self._high = high
+            self._hint()
+            self.field.validate()
+
+    def _hint(self) -> None:
+        high = f"{self._high:.10g} {self._unit}".rstrip()
+        self.field.props["hint"] = self._text("shell.range", low=f"{self._low:.10g}", high=high)
 
     def show(self, value: float) -> None:
         """Another number than was typed; nothing where it stands there already."""
@@ -186,6 +196,9 @@ def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool
             pressed()
         except (InputError, ComputationError) as error:
             say_error(error)
+        except Exception:  # it goes on to the log of the server
+            say_error(ComputationError(BROKEN))
+            raise
 
     found = ui.button(label, on_click=guarded, icon=icon or None, color=None)
     return found.props("no-caps unelevated" if primary else "no-caps outline").classes(
@@ -217,26 +230,6 @@ def _hush() -> None:
         before.dismiss()
 
 
-def ask(shared: Shared, text: Text, question: str, answered: Callable[[], Any]) -> None:
-    """Ask before something is written to the control. The answer counts once, and not after a minute."""
-    ticket = shared.tickets.draw()
-
-    def yes() -> None:
-        dialog.close()
-        if not shared.tickets.take(ticket):
-            say(text("shell.expired"), "warning")
-            return
-        answered()
-
-    with ui.dialog() as dialog, ui.card().classes("gm-dialog"):
-        ui.label(question).classes("gm-question")
-        with row():
-            button(text("shell.confirm"), yes, primary=True)
-            button(text("shell.cancel"), dialog.close)
-    dialog.on("hide", dialog.delete)
-    dialog.open()
-
-
 def table(columns: Sequence[tuple[str, str]], rows: Sequence[dict[str, Any]], key: str = "id") -> ui.table:
     """Rows under columns (name and title, with the unit); numbers to the right. Set ``.rows`` to change it."""
     number = {name for name, _ in columns if rows and isinstance(rows[0].get(name), int | float)}
@@ -248,30 +241,42 @@ def table(columns: Sequence[tuple[str, str]], rows: Sequence[dict[str, Any]], ke
     return found.props('dense flat hide-pagination separator="horizontal"').classes("gm-table")
 
 
-def progress(text: Text, work: Work, ended: Callable[[], object] = lambda: None) -> None:
-    """The bar of a long computation, while it runs; ``ended`` is called when one has, and when the page is opened."""
+def progress(
+    text: Text,
+    work: Work,
+    ended: Callable[[], object] = lambda: None,
+    what: Callable[[], str] | None = None,
+    is_current: Callable[[], bool] = lambda: True,
+) -> None:
+    """The bar of a long computation, while it runs; ``ended`` is called when one has, and when the page is opened.
+
+    ``what`` says in the language of the page what runs, its name by default. Where the outcome is not ``is_current``,
+    the reason of a failure goes, and ``ended`` is called anew: the fields have changed since.
+    """
     with ui.element("div").classes("gm-progress") as box:
         words = ui.label()
         bar = ui.linear_progress(0.0, show_value=False).props("instant-feedback")
-        bar.props["aria-label"] = text("shell.running", what="", seconds="").strip(": s") or "progress"
+        bar.props["aria-label"] = text("shell.progress")
         stop = button(text("shell.cancel"), work.cancel)
     failed = Message()
-    seen = [-1]
+    seen: list[tuple[int, bool] | None] = [None]
 
     def look() -> None:
         box.visible = work.running
         if work.running:
             failed.show("")
-            said = text("shell.running", what=work.name, seconds=f"{work.seconds:.0f}")
+            said = text("shell.running", what=what() if what else work.name, seconds=f"{work.seconds:.0f}")
             if work.remaining is not None:
                 said += f", {text('shell.remaining', seconds=f'{work.remaining:.0f}')}"
             words.text = said
             bar.props.update({"indeterminate": work.share is None})
             bar.value = round(work.share or 0.0, 3)
             stop.enabled = not work.progress.cancelled
-        elif seen[0] != work.count:
-            seen[0] = work.count
-            failed.show(text.quoted(work.error or ""), "error")
+            return
+        now = work.count, is_current()
+        if seen[0] != now:
+            seen[0] = now
+            failed.show(text.quoted(work.error or "") if now[1] else "", "error")
             ended()
 
     look()

@@ -48,7 +48,7 @@ def connection(text: Text, link: ControlLink | None) -> tuple[str, str]:
     if view.connected and not view.is_stale:
         return text("machine.connected"), "good"
     if view.age is None:
-        return text("machine.connecting"), "error" if view.problem else "info"
+        return (text("machine.never"), "error") if view.problem else (text("machine.connecting"), "info")
     return text("machine.silent" if view.connected else "machine.lost", age=duration(text, view.age)), "error"
 
 
@@ -71,7 +71,10 @@ def run_state(text: Text, task: MeasuringTask) -> tuple[str, str]:
     """How the run stands in words, and the kind of message that it is."""
     state = task.state
     program = task.run.start.program if task.run is not None else ""
-    words = text(f"measure.state_{state}").format(program=program, point=task.held_at)
+    begun = state is not RunState.ENDED or task.run is not None
+    words = text(f"measure.state_{state}" if begun else "measure.state_refused").format(
+        program=program, point=task.held_at
+    )
     if state is RunState.HELD and task.was_lost:  # why it is held
         words = f"{text('measure.state_lost')}. {words}"
     kinds = {

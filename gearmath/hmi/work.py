@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from typing import Any
 
 from gearmath.errors import ComputationError, InputError
+
+#: The sentence of a failure that has none of its own.
+BROKEN = "the server failed at this: what happened is written in the window in which 'gearmath hmi' runs"
 
 
 class _Cancelled(Exception):
@@ -45,17 +48,19 @@ class Work:
     result: Any = None
     error: str | None = None
     running: bool = False
+    asked: Hashable = None
+    """What the last one was asked for: a page tells by it whether the outcome is that of its fields."""
     progress: Progress = field(default_factory=Progress)
     count: int = 0
     """Counts the computations that have ended: a page draws anew when it has changed."""
     _begin: float = 0.0
     _thread: threading.Thread | None = None
 
-    def start(self, name: str, compute: Callable[[Progress], Any]) -> None:
+    def start(self, name: str, compute: Callable[[Progress], Any], asked: Hashable = None) -> None:
         """Begin. Raises InputError where one runs already."""
         if self.running:
             raise InputError(f"{self.name}: runs already")
-        self.name, self.result, self.error, self.running = name, None, None, True
+        self.name, self.result, self.error, self.running, self.asked = name, None, None, True, asked
         self.progress, self._begin = Progress(), time.monotonic()
         self._thread = threading.Thread(target=self._run, args=(compute,), name=name, daemon=True)
         self._thread.start()
@@ -92,6 +97,9 @@ class Work:
             self.error = str(error)
         except _Cancelled:
             pass
+        except Exception:  # it goes on to the log of the server
+            self.error = BROKEN
+            raise
         finally:
             self.running = False
             self.count += 1

@@ -103,14 +103,19 @@ class Nc:
 
     def select(self, path: str) -> None:
         """Select a program of ``files``, with the channel in reset."""
-        if self.channel != _RESET or path not in self.files:
-            raise InputError(f"{path}: cannot be selected: there is no such program, or the channel is not in reset")
+        name = path.rsplit("/", 1)[-1]
+        self._refuse_busy(f"{name}: cannot be selected")
+        if path not in self.files:
+            raise InputError(f"{name}: cannot be selected: there is no such program on the control")
         self.selected, self.mode = path, _AUTOMATIC
 
     def start(self) -> None:
         """Start the selected program."""
-        if self.channel != _RESET or not self.selected or sinumerik.EMERGENCY_STOP in self._numbers():
-            raise InputError("the program cannot be started: none is selected, one runs, or the machine is stopped")
+        self._refuse_busy("the program cannot be started")
+        if sinumerik.EMERGENCY_STOP in self._numbers():
+            raise InputError("the program cannot be started: after an emergency stop RESET comes first")
+        if not self.selected:
+            raise InputError("the program cannot be started: none is selected")
         name = self.selected.rsplit("/", 1)[-1]
         self._resetting, self.channel, self.program_state, self.message = False, _ACTIVE, PROGRAM_RUNNING, ""
         text = decoded(self.files[self.selected], name)
@@ -127,10 +132,11 @@ class Nc:
             self._clear(key)
 
     def emergency_stop(self) -> None:
-        """The button: alarm 3000, and the channel is interrupted until RESET."""
+        """The button: alarm 3000, once, and the channel is interrupted until RESET."""
         if self.channel == _ACTIVE:
             self.channel = _INTERRUPTED
-        self.raise_alarm(NcAlarm(sinumerik.EMERGENCY_STOP, "Emergency stop"))
+        if sinumerik.EMERGENCY_STOP not in self._numbers():
+            self.raise_alarm(NcAlarm(sinumerik.EMERGENCY_STOP, "Emergency stop"))
 
     def wait(self, seconds: float | None = None) -> None:
         """Until the program is over."""
@@ -158,6 +164,14 @@ class Nc:
             self._news.notify_all()
 
     # what the program does
+
+    def _refuse_busy(self, what: str) -> None:
+        """Say which program keeps the channel from anything else, and what ends it."""
+        name = self.selected.rsplit("/", 1)[-1]
+        if self.channel == _ACTIVE:
+            raise InputError(f"{what}: {name} runs")
+        if self.channel == _INTERRUPTED:
+            raise InputError(f"{what}: {name} is interrupted, and RESET comes first")
 
     def _numbers(self) -> set[str]:
         return {alarm.number for alarm in self.alarms.values()}

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from nicegui import ui
-
 from gearmath.control.interface import AXES
-from gearmath.hmi import widgets
+from gearmath.hmi import acting, widgets
 from gearmath.hmi.messages import Text
 from gearmath.hmi.simulated import SimulatedMachine
 from gearmath.hmi.state import Shared
@@ -40,8 +38,7 @@ def build(shared: Shared, text: Text) -> None:
         stale.show(text("machine.stale", age=duration(text, view.age or 0.0)) if old else "", "error")
         panel.classes(add="gm-stale" if old else "", remove="" if old else "gm-stale")
 
-    look()
-    ui.timer(widgets.LOOK, look)
+    acting.watch(text, look)
     _alarms(shared, text)
     if shared.simulated is not None:
         _operator(shared, text, shared.simulated)
@@ -74,20 +71,13 @@ def _alarms(shared: Shared, text: Text) -> None:
         none.visible, rows.visible = not found, bool(found)
         see.visible = any(not one.seen for one in entries)
 
-    look()
-    ui.timer(2 * widgets.LOOK, look)
+    acting.watch(text, look, 2 * widgets.LOOK)
 
 
 def _operator(shared: Shared, text: Text, machine: SimulatedMachine) -> None:
     link = shared.link
     assert link is not None
     chosen = {"name": ""}
-
-    def select() -> None:
-        if not chosen["name"]:
-            raise widgets.Refusal(text("measure.program_needed"))
-        machine.select(chosen["name"], shared.choice.gear_set)
-
     with widgets.panel(text("machine.operator"), wide=True):
         widgets.note(text("machine.operator_note"))
         with widgets.row():
@@ -97,16 +87,21 @@ def _operator(shared: Shared, text: Text, machine: SimulatedMachine) -> None:
                 None,
                 lambda name: chosen.update(name=name or ""),
             )
-            widgets.button(text("machine.select"), select)
+            label = text("machine.select")
+            select = widgets.button(label, lambda: machine.select(chosen["name"], shared.choice.gear_set))
             widgets.button(text("machine.start"), machine.start, "play_arrow")
             widgets.button(text("machine.reset"), lambda: link.submit(machine.reset()), "restart_alt")
             widgets.button(text("machine.stop"), machine.emergency_stop, "dangerous")
             widgets.button(text("machine.touch_probe"), machine.touch_probe, "touch_app")
-            widgets.button(text("machine.cut_line"), lambda: link.submit(machine.cut_line()), "link_off")
+            cut = widgets.button(text("machine.cut_line"), lambda: link.submit(machine.cut_line()), "link_off")
+        no_program = widgets.note("")
 
     def look() -> None:
         found = machine.programs()
         if names.options != found:
-            names.set_options(found)
+            names.set_options(found, value=chosen["name"] or None)
+        why = "" if chosen["name"] else text("machine.select_needed" if found else "machine.none_on_control")
+        acting.allow(why, no_program, select)
+        cut.enabled = link.view.connected  # what it fails is said above
 
-    ui.timer(4 * widgets.LOOK, look)
+    acting.watch(text, look)

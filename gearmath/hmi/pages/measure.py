@@ -8,7 +8,7 @@ from typing import Any
 
 from nicegui import ui
 
-from gearmath.hmi import blocks, programs_work, widgets
+from gearmath.hmi import acting, blocks, programs_work, widgets
 from gearmath.hmi.link import ControlLink
 from gearmath.hmi.measuring_task import MeasuringTask, RunState
 from gearmath.hmi.messages import Text
@@ -48,12 +48,12 @@ def _going_on(shared: Shared, text: Text, task: MeasuringTask) -> None:
             hold = widgets.button(text("measure.hold"), task.hold, "pause", primary=True)
             go_on = widgets.button(
                 text("measure.go_on"),
-                lambda: widgets.ask(shared, text, text("measure.go_on_question"), task.go_on),
+                lambda: acting.ask(shared, text, text("measure.go_on_question"), task.go_on),
                 "play_arrow",
             )
             end = widgets.button(
                 text("measure.end"),
-                lambda: widgets.ask(shared, text, text("measure.end_question"), task.stop),
+                lambda: acting.ask(shared, text, text("measure.end_question"), task.stop),
                 "stop",
             )
         details = widgets.note("")
@@ -76,8 +76,7 @@ def _going_on(shared: Shared, text: Text, task: MeasuringTask) -> None:
         last = list(task.sentences)[-3:]
         details.text = f"{text('measure.details')}: {' · '.join(map(text.quoted, last))}" if last else ""
 
-    look()
-    ui.timer(widgets.LOOK, look)
+    acting.watch(text, look)
 
 
 def _touches(text: Text, task: MeasuringTask) -> None:
@@ -98,8 +97,7 @@ def _touches(text: Text, task: MeasuringTask) -> None:
         if rows.rows != found:
             rows.rows = found
 
-    look()
-    ui.timer(widgets.LOOK, look)
+    acting.watch(text, look)
 
 
 def _place(text: Text, cells: tuple[str, ...]) -> str:
@@ -111,6 +109,17 @@ def _place(text: Text, cells: tuple[str, ...]) -> str:
     return text("measure.place_of", **{**values, "member": blocks.member_name(text, cells[0]), "flank": flank})
 
 
+def _why_not(shared: Shared, text: Text, missing: str) -> str:
+    """Why no run can begin: one goes on, what is ``missing``, or there is no connection; empty where it can."""
+    assert shared.link is not None
+    assert shared.measuring is not None
+    if shared.measuring.is_going_on:
+        return text("measure.goes_on")
+    if missing or shared.link.view.connected:
+        return missing
+    return text("measure.not_connected", control=control_name(text, shared))
+
+
 def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> Callable[[], None]:
     """Returns what raises InputError while the probe is not checked."""
     chosen = {"name": ""}
@@ -120,7 +129,8 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
         widgets.heading(text("measure.check"))
         said = widgets.Message()
         by_hand = ui.checkbox(text("measure.check_by_hand"))
-        widgets.button(text("measure.start"), lambda: ask_to_start(), "fiber_manual_record", primary=True)
+        start = widgets.button(text("measure.start"), lambda: ask_to_start(), "fiber_manual_record", primary=True)
+        reason = widgets.note("")
 
     def checked() -> None:
         if not (check.is_done or by_hand.value):
@@ -132,7 +142,7 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
         checked()
         choice = shared.choice
         values = {"program": name, "control": control_name(text, shared), "gear_set": choice.gear_set}
-        widgets.ask(
+        acting.ask(
             shared,
             text,
             text("measure.start_question", **values),
@@ -143,12 +153,12 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
         found = [one.name for one in programs_work.programs(shared.folder)]
         if names.options != found:
             names.set_options(found, value=chosen["name"] if chosen["name"] in found else None)
+        acting.allow(_why_not(shared, text, text("measure.no_program") if not found else ""), reason, start)
         check.look(None if link.view.is_stale else link.view.probe)
         by_hand.visible = check.state == "unknown"
         said.show(text(f"measure.check_{check.state}"), "good" if check.is_done else "info")
 
-    look()
-    ui.timer(widgets.LOOK, look)
+    acting.watch(text, look)
     return checked
 
 
@@ -156,20 +166,26 @@ def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
     with widgets.panel(text("measure.unfinished")):
         none = widgets.note(text("measure.none_unfinished"))
         place = ui.element("div").classes("gm-list")
+        reason = widgets.note("")
     shown: list[list[UnfinishedRun] | None] = [None]
+    buttons: list[ui.button] = []
 
     def ask_to_resume(one: UnfinishedRun) -> None:
         values = {"run": one.run, "program": one.program, "kept": one.kept, "total": one.total}
-        widgets.ask(shared, text, text("measure.resume_question", **values), lambda: task.resume(one.run))
+        acting.ask(shared, text, text("measure.resume_question", **values), lambda: task.resume(one.run))
 
     def look() -> None:
         own = task.run.id if task.is_going_on and task.run is not None else None
         found = [one for one in unfinished_runs(shared.store) if one.run != own][:10]
         none.visible = not found
-        if shown[0] == found:
-            return
-        shown[0] = found
+        if shown[0] != found:
+            shown[0] = found
+            draw(found)
+        acting.allow(_why_not(shared, text, "") if found else "", reason, *buttons)
+
+    def draw(found: list[UnfinishedRun]) -> None:
         place.clear()
+        buttons.clear()
         with place:
             for one in found:
                 widgets.note(
@@ -178,10 +194,10 @@ def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
                     f"{text('measure.begun')} {one.begun[:16].replace('T', ' ')} UTC. "
                     f"{text('measure.why')}: {text.quoted(one.why) or text('measure.open')}"
                 )
-                widgets.button(text("measure.resume", run=one.run), partial(ask_to_resume, one), "replay")
+                label = text("measure.resume", run=one.run)
+                buttons.append(widgets.button(label, partial(ask_to_resume, one), "replay"))
 
-    look()
-    ui.timer(4 * widgets.LOOK, look)
+    acting.watch(text, look, 4 * widgets.LOOK)
 
 
 def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[], None]) -> None:
@@ -189,16 +205,19 @@ def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[]
     with widgets.panel(text("measure.again")):
         runs = widgets.choice(text("measure.again_run"), {}, None, lambda run: chosen.update(run=run))
         points = widgets.word(text("measure.again_points"), "", "")
-        widgets.button(text("measure.again_start"), lambda: ask_again(), "replay")
+        start = widgets.button(text("measure.again_start"), lambda: ask_again(), "replay")
+        reason = widgets.note("")
 
     def ask_again() -> None:
         run, wanted = chosen["run"], (points.value or "").strip()
         if run is None:
-            raise widgets.Refusal(text("measure.program_needed"))
+            raise widgets.Refusal(text("measure.run_needed"))
+        if not wanted:
+            raise widgets.Refusal(text("measure.points_needed"))
         checked()
         program = complete_runs(shared.store)[run]
         choice = shared.choice
-        widgets.ask(
+        acting.ask(
             shared,
             text,
             text("measure.again_question", points=wanted, run=run),
@@ -208,7 +227,7 @@ def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[]
     def look() -> None:
         found = {run: f"{run}: {program}" for run, program in complete_runs(shared.store).items()}
         if runs.options != found:
-            runs.set_options(found, value=chosen["run"])
+            runs.set_options(found, value=chosen["run"] if chosen["run"] in found else None)
+        acting.allow(_why_not(shared, text, text("measure.no_complete") if not found else ""), reason, start)
 
-    look()
-    ui.timer(4 * widgets.LOOK, look)
+    acting.watch(text, look, 4 * widgets.LOOK)

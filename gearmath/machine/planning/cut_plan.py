@@ -155,8 +155,9 @@ def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob,
         yield from _hobbing_passes(member, name, machine, job)
         return
     angles = tooth_angles(member.teeth, member.rad("index_correction"))
-    if not all(0 <= space < member.teeth for space in job.spaces):
-        raise InputError(f"{name}: spaces = {list(job.spaces)}: must be numbers from 0 to {member.teeth - 1}")
+    beyond = next((space for space in job.spaces if not 0 <= space < member.teeth), None)
+    if beyond is not None:
+        raise InputError(f"{name}: space {beyond}: must be a number from 0 to {member.teeth - 1}")
     stands = None
     for cut in Cut.of(member, name):
         _check_motions(member, name, cut)

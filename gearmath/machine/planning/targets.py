@@ -58,8 +58,9 @@ def probe_targets(
     the corners of the grid where it was probed in full, whose normals tell a drift in any direction.
     Raises InputError naming flank, row and column where the tip has no room between the flanks.
     """
-    if not all(0 <= tooth < member.teeth for tooth in topography):
-        raise InputError(f"{name}: teeth = {list(topography)}: must be numbers from 0 to {member.teeth - 1}")
+    beyond = next((tooth for tooth in topography if not 0 <= tooth < member.teeth), None)
+    if beyond is not None:
+        raise InputError(f"{name}: tooth {beyond} for topography: must be a number from 0 to {member.teeth - 1}")
     grid = blank_grid(member) if grid is None else grid
     flanks = [targets_of_space(member, name, flank, grid, machine, calibration) for flank in FLANKS]
     parts = []

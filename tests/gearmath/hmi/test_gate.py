@@ -167,6 +167,28 @@ def test_no_path_leads_out_of_what_is_served(served: Served, path: str) -> None:
     assert status in (400, 403, 404)
 
 
+@pytest.mark.parametrize(
+    ("language", "known", "status", "said", "back"),
+    [
+        ("en", True, 404, "There is no page at this address.", "To the page Machine"),
+        ("de", True, 404, "Unter dieser Adresse gibt es keine Seite.", "Zur Seite Maschine"),
+        ("de", False, 403, "Abgelehnt: ohne Schlüssel: die Adresse öffnen", "Zur Seite Maschine"),
+    ],
+)
+def test_what_cannot_be_shown_is_one_plain_page_in_the_language_of_the_browser(
+    served: Served, language: str, known: bool, status: int, said: str, back: str
+) -> None:
+    headers = {"Accept": "text/html", "Accept-Language": language} | ({"Cookie": _cookie(served)} if known else {})
+    for method, path in (("GET", "/nothing"), ("GET", "/_nicegui/x/static/none.js"), ("GET", "/machine/<b>")):
+        found, body, kept = _ask(served, method, path, **headers)
+        assert found == status, path
+        assert said in body, path
+        assert f'<a class="gm-back" href="/">{back}</a>' in body
+        assert "frame-ancestors 'none'" in kept["content-security-policy"]
+        shown = body.rpartition("</style>")[2]
+        assert not re.search(r"Exception|Traceback|nicegui|<b>", shown), path
+
+
 @pytest.mark.parametrize("path", ["/a%0aforged%20line", "/%00", "/%1b[31m", "/%7f"])
 def test_no_path_writes_control_characters_into_the_log(served: Served, path: str) -> None:
     status, body, _ = _ask(served, "GET", path, Cookie=_cookie(served))

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 
 import pytest
+from playwright.sync_api import expect
 
 from gearmath.hmi.messages import Text
 from gearmath.hmi.numbers import parsed
@@ -27,13 +28,28 @@ def test_a_probing_program_is_written_shown_and_sent_as_it_is(
     assert "least clearance: tip" in said.inner_text()
     text = (page.folder / "PROBE_ONE.MPF").read_bytes()
     assert text.count(b"MEAS=") > 0
+    # the limit is the number of teeth of the pinion; the verdict is not of what is refused, and comes back with it
+    teeth = panel.get_by_label("Teeth with whole flanks, from tooth 0 on", exact=True)
+    for typed, why in (("13", "13: must lie between 0 and 12"), ("", "a number is missing")):
+        teeth.fill(typed)
+        one.sees(why, panel)
+        one.sees("From other inputs than now: PROBE_ONE.MPF", panel)
+    teeth.fill("1")
+    one.sees(re.compile("^PROBE_ONE.MPF: "), panel)
+    one.sees("Choose a program to mill or send it.")
+    for label in ("Mill virtually", "Send to the control"):
+        expect(one.page.get_by_role("button", name=label, exact=True)).to_be_disabled()
     one.choose("Program", "PROBE_ONE.MPF")
     one.sees("Text of PROBE_ONE.MPF")
+    one.press("Mill virtually")
+    one.sees("PROBE_ONE.MPF: is a probing program: only a cutting program can be milled")
     assert text.decode().splitlines()[0] in one.page.locator("pre").inner_text()
     begin = len(live.nc.log)
-    one.press("Send to the control")
+    # a double click asks once, and its answer counts once
+    one.page.get_by_role("button", name="Send to the control", exact=True).dblclick()
     one.sees("It is neither selected nor started.")
-    one.press("Yes, do it")
+    assert one.page.get_by_role("dialog").count() == 1
+    one.page.get_by_role("button", name="Yes, do it", exact=True).dblclick()
     one.sees(f"PROBE_ONE.MPF is there, {len(text)} bytes, read back alike.")
     one.picture("programs_sent")
     assert live.nc.files["Part Program/PROBE_ONE.MPF"] == text

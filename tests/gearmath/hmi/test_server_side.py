@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 import subprocess
 import sys
@@ -14,11 +15,13 @@ from gearmath.control.interface import Alarm
 from gearmath.control.run_start import begun
 from gearmath.errors import InputError
 from gearmath.hmi.alarm_book import MOST, AlarmBook
+from gearmath.hmi.messages import Text
+from gearmath.hmi.plain_page import PlainErrors
 from gearmath.hmi.probe_check import ProbeCheck
-from gearmath.hmi.programs_work import programs, read, write_cutting, write_probing
+from gearmath.hmi.programs_work import programs, read, teeth, write_cutting, write_probing
 from gearmath.hmi.state import Choice
 from gearmath.hmi.tickets import Tickets
-from gearmath.hmi.work import Progress, Work
+from gearmath.hmi.work import BROKEN, Progress, Work
 from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
@@ -136,6 +139,52 @@ def test_what_fails_is_told_in_its_sentence() -> None:
     work.start("work", compute)
     work.wait(10)
     assert work.error == "set.toml: teeth = 0: must be at least 5"
+
+
+def test_a_failure_without_a_sentence_of_its_own_is_said_and_not_hidden(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    logged: list[object] = []
+    monkeypatch.setattr(threading, "excepthook", logged.append)
+
+    def compute(progress: Progress) -> None:
+        raise KeyError("inside")
+
+    work = Work()
+    work.start("work", compute)
+    work.wait(10)
+    assert work.error == BROKEN
+    assert "inside" not in BROKEN
+    assert len(logged) == 1
+    assert Text("de").quoted(BROKEN).startswith("der Server ist daran gescheitert: was geschehen ist")
+
+
+def test_an_application_that_fails_answers_one_plain_page_and_tells_its_log() -> None:
+    sent: list[dict[str, object]] = []
+
+    async def fails(scope: object, receive: object, send: object) -> None:
+        raise KeyError("inside")
+
+    async def send(message: object) -> None:
+        sent.append(message)  # type: ignore[arg-type]
+
+    headers = [(b"accept", b"text/html"), (b"accept-language", b"de")]
+    scope = {"type": "http", "method": "GET", "path": "/machine", "query_string": b"", "headers": headers}
+    with pytest.raises(KeyError):
+        asyncio.run(PlainErrors(fails)(scope, None, send))  # type: ignore[arg-type]
+    assert sent[0]["status"] == 500
+    body = bytes(sent[1]["body"]).decode()  # type: ignore[call-overload]
+    assert "Der Server ist daran gescheitert; ein Messlauf geht weiter." in body
+    assert "KeyError" not in body
+    assert "inside" not in body
+
+
+def test_the_teeth_that_a_page_offers_are_those_of_the_chosen_member(tmp_path: Path) -> None:
+    assert [teeth(Choice(member=name)) for name in ("pinion", "gear")] == [12, 36]
+    wrong = tmp_path / "wrong.toml"
+    wrong.write_text("[pinion]\nteeth = 0\n", "utf-8")
+    with pytest.raises(InputError, match=r"wrong\.toml"):
+        teeth(Choice(gear_set=str(wrong)))
 
 
 def test_programs_are_for_the_control_of_the_machine_file(tmp_path: Path) -> None:

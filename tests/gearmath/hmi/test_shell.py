@@ -64,12 +64,17 @@ def test_every_page_shows_itself_without_serious_violation_of_accessibility(
 def test_the_address_that_is_shown_lets_the_browser_in(served: Served, operator: Callable[..., Operator]) -> None:
     one = operator(served)
     one.context.clear_cookies()
-    one.forgiven = ("403",)
+    one.forgiven = ("403", "404")
     one.page.goto(f"{served.base}/machine")
-    one.sees("refused: no token")
+    one.sees("Refused: no token: open the address that 'gearmath hmi' showed when it started.")
     one.page.goto(served.address)
     one.page.wait_for_url("**/machine")
     one.page.get_by_role("heading", level=1, name="Machine").wait_for()
+    one.page.goto(f"{served.base}/nothing")
+    one.sees("There is no page at this address.")
+    assert one.axe() == []
+    one.page.get_by_role("link", name="To the page Machine").click()
+    one.page.wait_for_url("**/machine")
 
 
 def test_language_and_look_are_chosen_by_keyboard_and_stay(served: Served, operator: Callable[..., Operator]) -> None:

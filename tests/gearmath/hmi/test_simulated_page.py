@@ -11,6 +11,7 @@ from collections.abc import Callable
 from urllib.parse import urlencode
 
 import pytest
+from playwright.sync_api import expect
 from websockets.sync.client import connect
 
 from gearmath.control.store import MeasurementStore
@@ -26,15 +27,22 @@ def served(serve: Callable[..., Served]) -> Served:
     return serve("--control", "simulated")
 
 
-def test_select_without_a_program_says_so_and_the_sentence_goes_at_the_next_press(
+def test_what_cannot_act_says_why_beside_it_or_at_once_and_that_goes_at_the_next_press(
     served: Served, operator: Callable[..., Operator]
 ) -> None:
     one = operator(served, "machine")
-    one.press("Select")
-    said = one.sees("A program must be chosen first.")
+    one.sees("No program is on the control yet: send one from the page Programs.")
+    expect(one.page.get_by_role("button", name="Select", exact=True)).to_be_disabled()
+    one.press("NC start")
+    said = one.sees("the program cannot be started: none is selected")
     one.press("Deflect or release the probe")
     said.wait_for(state="hidden")
     one.press("Deflect or release the probe")
+    one.go("measure")
+    one.sees("There is no program yet: write one on the page Programs.", one.panel("New run"))
+    one.sees("There is no complete run yet.", one.panel("Touch points again"))
+    for label in ("Start recording", "Record these points again"):
+        expect(one.page.get_by_role("button", name=label, exact=True)).to_be_disabled()
 
 
 @pytest.mark.slow
