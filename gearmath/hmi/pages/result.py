@@ -34,6 +34,7 @@ def build(shared: Shared, text: Text) -> None:
             text("result.judging"),
             compute,
             lambda found: _show(shared, text, found),
+            text("blocks.no_run"),
         )
 
 
