@@ -172,14 +172,16 @@ def _cell(tag: str, words: str, right: bool) -> None:
         ui.label(words).classes("gm-inline")
 
 
-def run_choice(shared: Shared, text: Text) -> None:
-    """The run that the pages show, of those that can be judged; the newest first."""
+def run_choice(shared: Shared, text: Text, empty: str = "") -> None:
+    """The run that the pages show, of those that can be judged; the newest first. ``empty`` is said of none."""
     desk = shared.desk
 
     def draw() -> None:
         runs = desk.runs.of_members()
         if not runs:
-            return  # what needs one says so
+            if empty:  # else the buttons that need one say so
+                widgets.note(empty)
+            return
         names = {str(one.run): run_name(text, one) for one in reversed(runs)}
         shown = str(desk.shown_run())
 

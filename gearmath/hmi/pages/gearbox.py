@@ -134,7 +134,7 @@ class _GearboxPage:
                 feed.on("change", lambda: self.wish(feed=feed.value))
         most, label = machine.limits.hob_rpm, text("gearbox.rpm")  # left out, it is what the plan proposes
         rpm = widgets.NumberField(
-            text, label, wish.rpm, "1/min", 0.0, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True
+            text, label, wish.rpm, "1/min", 0.01, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True
         )
         self.fields.append(rpm)
 

@@ -19,7 +19,7 @@ def build(shared: Shared, text: Text) -> None:
     """The content of the page."""
     desk = shared.desk
     with widgets.panel(text("result.run"), wide=True):
-        blocks.run_choice(shared, text)
+        blocks.run_choice(shared, text, text("blocks.no_run"))
 
     def compute() -> Callable[[Progress], ResultView]:
         run = desk.shown_run()
@@ -34,7 +34,6 @@ def build(shared: Shared, text: Text) -> None:
             text("result.judging"),
             compute,
             lambda found: _show(shared, text, found),
-            text("blocks.no_run"),
         )
 
 
