@@ -363,7 +363,7 @@ class _GearPage:
             numbers = (one["contact_ratio"], one["peak_to_peak_arcsec"], 100 * one["pattern"]["share"])
             shown = ("–" if value is None else f"{value:z.2f}" for value in numbers)
             rows.append([text(f"gear.{side}"), *shown, words.get(one["outcome"], one["outcome"])])
-        head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / arcsec"]
+        head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / {text('units.arcsec')}"]
         at = "V {:z.10g}, H {:z.10g}, J {:z.10g} mm".format(*self.desk.assembly)  # a field may hold what is refused
         blocks.plain_table(at, [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
         blocks.chart(text, svg, text("gear.contact"), across=True)
