@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
-from typing import Any
+from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Protocol
 
 from nicegui import ui
 
@@ -33,6 +34,59 @@ def follow(key: Callable[[], Hashable], draw: Callable[[], object]) -> None:
     ui.timer(widgets.LOOK, look)
 
 
+class _Add(Protocol):
+    def __call__(
+        self,
+        missing: Callable[[], str],
+        label: str,
+        pressed: Callable[[], object],
+        icon: str = "",
+        primary: bool = False,
+    ) -> None: ...
+
+
+@contextmanager
+def buttons() -> Iterator[_Add]:
+    """Buttons in a row, each pressed only while nothing is ``missing``; what is, stands beside them once."""
+    made: list[tuple[ui.button, Callable[[], str]]] = []
+
+    def look() -> None:
+        found = [(one, missing()) for one, missing in made]
+        for one, why in found:
+            one.enabled = not why
+        said.text = " ".join(dict.fromkeys(why for _, why in found if why))
+        said.visible = bool(said.text)
+
+    def add(
+        missing: Callable[[], str], label: str, pressed: Callable[[], object], icon: str = "", primary: bool = False
+    ) -> None:
+        def press() -> None:
+            if not missing():
+                pressed()
+            look()  # at once: the second of two quick clicks finds what the first has left
+
+        made.append((widgets.button(label, press, icon, primary), missing))
+
+    with widgets.row():
+        yield add
+        said = widgets.note("")
+        for one, _ in made:
+            one.props["aria-describedby"] = f"c{said.id}"
+    look()
+    ui.timer(widgets.LOOK, look)
+
+
+def refused(text: Text, fields: Iterable[widgets.NumberField], said: str = "blocks.refused") -> str:
+    """The sentence ``said`` with the names of the fields that hold what is refused; nothing where none does."""
+    names = "; ".join(one.label for one in fields if one.is_refused)
+    return text(said, fields=names) if names else ""
+
+
+def marked(why: Callable[[], str]) -> None:
+    """Why what is shown here is not what is asked for, as long as that is so."""
+    follow(why, lambda: widgets.Message(why(), "warning"))
+
+
 def kept(
     text: Text,
     found: Kept,
@@ -41,19 +95,23 @@ def kept(
     compute: Callable[[], Callable[[Progress], Any]],
     draw: Callable[[Any], object],
     empty: str = "",
+    outdated: Callable[[], str] = str,
 ) -> None:
     """What is computed for a key, as soon as it is there; the progress until then, or why there is nothing.
 
-    ``compute`` gives the computation for the key of now; a key of None has none, and ``empty`` is said.
+    ``compute`` gives the computation for the key of now; a key of None has none, and ``empty`` is said. While
+    ``outdated`` says that something else is typed than what was computed, that is said and nothing is shown.
     """
 
-    def state() -> tuple[Hashable, bool, int]:
+    def state() -> tuple[Hashable, bool, int, str]:
         now = key()
-        return now, now is not None and found.look(now, name, compute()), found.work.count
+        return now, now is not None and found.look(now, name, compute()), found.work.count, outdated()
 
     def show() -> None:
-        now, ended, _ = state()
-        if now is None:
+        now, ended, _, why = state()
+        if why:
+            widgets.Message(why, "warning")
+        elif now is None:
             if empty:
                 widgets.note(empty)
         elif not ended:
@@ -114,14 +172,15 @@ def _cell(tag: str, words: str, right: bool) -> None:
         ui.label(words).classes("gm-inline")
 
 
-def run_choice(shared: Shared, text: Text) -> None:
-    """The run that the pages show, of those that can be judged; the newest first."""
+def run_choice(shared: Shared, text: Text, empty: str = "") -> None:
+    """The run that the pages show, of those that can be judged; the newest first. ``empty`` is said of none."""
     desk = shared.desk
 
     def draw() -> None:
         runs = desk.runs.of_members()
         if not runs:
-            widgets.note(text("blocks.no_run"))
+            if empty:  # else the buttons that need one say so
+                widgets.note(empty)
             return
         names = {str(one.run): run_name(text, one) for one in reversed(runs)}
         shown = str(desk.shown_run())

@@ -31,6 +31,8 @@ FIELDS: dict[str, tuple[float, float]] = {
 }
 #: A name within the zip: a plain file of the sketch's folder.
 _PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,62}", re.ASCII)
+#: A feed as it is typed: 1.25 or 5/4; no power of ten, which may have more digits than there is memory.
+_FEED = re.compile(r"[+-]?(?:\d{1,15}(?:\.\d{0,15}|/0*[1-9]\d{0,14})?|\.\d{1,15})", re.ASCII)
 #: The time of every file in the zip: the same firmware is the same file.
 _TIME = (1980, 1, 1, 0, 0, 0)
 
@@ -69,7 +71,7 @@ def planned(machine: HobbingMachine, wish: HobbingWish) -> Job:
     """The job. Raises InputError naming the limit that it would break."""
     given: dict[str, Any] = {key: getattr(wish, key) for key in ("starts", "rpm") if getattr(wish, key) is not None}
     if machine.profile == "lathe":
-        return plan(machine, pitch=wish.pitch or "", hand=wish.hand, **given)
+        return plan(machine, pitch=(wish.pitch or "").replace(",", "."), hand=wish.hand, **given)
     if wish.hob is not None:
         given["hob"] = wish.hob
     if wish.helix:
@@ -176,7 +178,7 @@ def _rates(job: GearboxJob) -> Iterator[PlanLine]:
 def _feed(typed: str) -> Fraction | None:
     if not typed.strip():
         return None
-    try:
-        return Fraction(typed.strip().replace(",", "."))
-    except (ValueError, ZeroDivisionError):
-        raise InputError(f"feed = {typed.strip()[:30]!r}: must be a number of mm per turn of the table") from None
+    plain = typed.strip().replace(",", ".")
+    if _FEED.fullmatch(plain) is None:
+        raise InputError(f"feed = {plain[:30]!r}: must be a number of mm per turn of the table")
+    return Fraction(plain)

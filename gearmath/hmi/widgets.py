@@ -94,7 +94,7 @@ class NumberField:
     is refused with the reason.
 
     ``value`` is the accepted number, None while what stands in the field is refused. ``changed`` hears of each
-    accepted one, when the field is left or Enter is pressed.
+    accepted one, when the field is left or Enter is pressed; an ``optional`` field may be left empty, which is None.
     """
 
     def __init__(
@@ -105,17 +105,19 @@ class NumberField:
         unit: str,
         low: float,
         high: float,
-        changed: Callable[[float], object] = lambda value: None,
+        changed: Callable[[Any], object] = lambda value: None,
         digits: int = 6,
+        optional: bool = False,
     ) -> None:
         self._text, self._unit, self._low, self._high = text, unit, low, high
-        self._changed, self._digits = changed, digits
+        self._changed, self._digits, self._optional = changed, digits, optional
+        self.label = label
         typed = "" if value is None else self._words(value)
         self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
         self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
         self.field.props["suffix"] = unit
         self._hint()
-        self.value, _ = self._parsed(typed)
+        self.value, self._why = self._parsed(typed)
         self.field.on("change", lambda: self._leave())
 
     def limit(self, high: float) -> None:
@@ -140,17 +142,24 @@ class NumberField:
 
     def refuse(self, why: str) -> None:
         """Show a reason that is known only when the whole is judged."""
-        self.value, self.field.error = None, why
+        self.value, self._why, self.field.error = None, why, why
+
+    @property
+    def is_refused(self) -> bool:
+        """Whether what stands in the field does not count."""
+        return self._why is not None
 
     def _parsed(self, typed: str | None) -> tuple[float | None, str | None]:
+        if self._optional and not (typed or "").strip():
+            return None, None
         return parsed(self._text, typed or "", self._low, self._high, self._unit, not self._digits)
 
     def _refusal(self, typed: str | None) -> str | None:
-        self.value, why = self._parsed(typed)
-        return why
+        self.value, self._why = self._parsed(typed)
+        return self._why
 
     def _leave(self) -> None:
-        if self.value is not None:
+        if not self.is_refused:
             self._changed(self.value)
 
 

@@ -219,9 +219,10 @@ class Member(Sheet):
         slack = abs(spec.blank_offset) + abs(spec.machine_center_to_crossing_point) + spec.blade_profile_height
         if not abs(S - r) - slack <= R <= S + r + slack:
             raise ValueError(
-                f"{name}.blade_point_radius = {shown(r):g}: no real contact, the cutter does not reach the mean point: "
-                f"at radial_distance = {shown(S):g} it must lie between {shown(abs(R - S) - slack):.4g} and "
-                f"{shown(R + S + slack):.4g}"
+                f"{name}: no real contact, the cutter does not reach the mean point: "
+                f"radial_distance = {shown(S):g} must lie between {shown(abs(R - r) - slack):.4g} and "
+                f"{shown(R + r + slack):.4g}, or blade_point_radius = {shown(r):g} between "
+                f"{shown(abs(R - S) - slack):.4g} and {shown(R + S + slack):.4g}"
             )
 
     @property

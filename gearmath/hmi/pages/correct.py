@@ -62,6 +62,10 @@ class _CorrectPage:
         run = self.desk.shown_run()
         return None if run is None else (run, self.desk.which)
 
+    def no_run(self) -> str:
+        """That there is nothing to correct, where there is not."""
+        return "" if self.key() is not None else self.text("blocks.no_run")
+
     def wanted(self) -> Hashable:
         """The same, once somebody has asked."""
         return self.key() if self.desk.wanted.get("correct") == self.key() else None
@@ -80,7 +84,8 @@ class _CorrectPage:
             desk.of("correct").forget()
             desk.wanted["correct"] = self.key()
 
-        widgets.button(text("correct.compute"), begin, "tune", primary=True)
+        with blocks.buttons() as button:
+            button(self.no_run, text("correct.compute"), begin, "tune", primary=True)
 
     def measured(self) -> None:
         """The run before any correction."""
@@ -174,23 +179,24 @@ class _CorrectPage:
             wanted = self.wanted()
             return kept.work.result[0] if wanted is not None and kept.has(wanted) else None
 
+        def missing() -> str:
+            if work.running:
+                return text("correct.writing")
+            return self.no_run() or ("" if proposal() is not None else text("correct.none"))
+
+        def nothing() -> str:
+            found = proposal()
+            return text("correct.nothing_written") if found is not None and found.changes_nothing else ""
+
         def accepted() -> None:
             found = proposal()
-            if found is None:
-                done.show(text("correct.none"), "warning")
-                return
-            if found.changes_nothing:
-                done.show(text("correct.nothing_written"), "warning")
-                return
-            done.show("")
+            assert found is not None  # else something is missing
+            desk.wanted["correct.accept"] = self.key()
             work.start(text("correct.writing"), lambda progress: accept(desk.runs, found, self.shared.folder))
 
         def rejected() -> None:
             found = proposal()
-            if found is None:
-                done.show(text("correct.none"), "warning")
-                return
-            done.show("")
+            assert found is not None  # else something is missing
             reject(desk.runs, found, note.value or "")
             desk.wanted.pop("correct", None)
             desk.decisions += 1
@@ -198,21 +204,28 @@ class _CorrectPage:
 
         note = ui.input(text("correct.note")).classes("gm-text").props("outlined dense counter")
         note.props["maxlength"] = NOTE
-        with widgets.row():
-            widgets.button(text("correct.accept"), accepted, "check", primary=True)
-            widgets.button(text("correct.reject"), rejected, "close")
-        done = widgets.Message()
-        # what was said of a run, or of there being no correction, goes when another is shown
-        blocks.follow(lambda: (self.key(), proposal() is not None), lambda: done.show(""))
+        with blocks.buttons() as button:
+            button(lambda: missing() or nothing(), text("correct.accept"), accepted, "check", primary=True)
+            button(missing, text("correct.reject"), rejected, "close")
 
-        def ended() -> None:
-            if isinstance(work.result, Accepted):
-                made: Accepted = work.result
-                names = {"set": made.gear_set.name, "program": made.program.name, "blocks": made.blocks}
-                done.show(text("correct.written", **names), "good")
-                desk.decisions += 1
+        def outcome() -> None:
+            """What became of the correction that is shown, not of another one."""
+            if desk.wanted.get("correct.accept") != self.key():
+                return
+            done = widgets.Message()
 
-        widgets.progress(text, work, ended)
+            def ended() -> None:
+                if isinstance(work.result, Accepted):
+                    made: Accepted = work.result
+                    names = {"set": made.gear_set.name, "program": made.program.name, "blocks": made.blocks}
+                    done.show(text("correct.written", **names), "good")
+                    desk.decisions += 1
+                else:
+                    done.show("")
+
+            widgets.progress(text, work, ended)
+
+        blocks.follow(lambda: desk.wanted.get("correct.accept") == self.key(), outcome)
         blocks.follow(lambda: (desk.shown_run(), desk.decisions), self._decided)
 
     def _decided(self) -> None:

@@ -54,6 +54,7 @@ class _GearPage:
         """How flanks are drawn, space or flat; nothing until the browser has said what it can."""
         self.mine: dict[Place, float] = {}
         """What this page has typed, or has shown as typed."""
+        self.fields: dict[Place, widgets.NumberField] = {}
         self.plot: ui.plotly | None = None
 
     # what is computed
@@ -62,7 +63,8 @@ class _GearPage:
         """By what a draft is known: the file as it is, the member, what was typed and what is shown."""
         choice, desk = self.shared.choice, self.desk
         run = desk.shown_run() if desk.source == "run" else None
-        return choice.gear_set, _changed_at(choice.gear_set), choice.member, tuple(desk.typed.items()), run
+        typed = tuple(desk.typed.items())
+        return choice.gear_set, _changed_at(choice.gear_set), choice.member, typed, desk.source, run
 
     def compute(self) -> Callable[[Progress], Draft]:
         """The draft of the settings that are typed."""
@@ -74,6 +76,15 @@ class _GearPage:
         """A part that shows the draft."""
         text = self.text
         blocks.kept(text, self.desk.of("gear.draft"), self.key, text("gear.judging"), self.compute, draw)
+
+    def without(self) -> str:
+        """Which settings are refused, and are not in what is shown."""
+        return blocks.refused(self.text, self.fields.values(), "gear.without")
+
+    def no_run(self) -> str:
+        """That there is no run to show, where one is asked for."""
+        is_there = self.desk.source != "run" or self.desk.shown_run() is not None
+        return "" if is_there else self.text("blocks.no_run")
 
     # what is shown
 
@@ -104,7 +115,7 @@ class _GearPage:
 
     def settings(self) -> None:
         """A field for each setting, then what is changed against the file."""
-        fields: dict[Place, widgets.NumberField] = {}
+        fields = self.fields
         of_file: list[Hashable] = []
 
         def draw(found: Draft) -> None:
@@ -128,6 +139,7 @@ class _GearPage:
             self._show(found, fields, set(fields))
 
         place = ui.element("div").classes("gm-follow")
+        blocks.marked(self.without)
         self.kept(draw)
 
     def _fields(self, found: Draft, fields: dict[Place, widgets.NumberField]) -> None:
@@ -155,10 +167,8 @@ class _GearPage:
         return typed
 
     def _changes(self, found: Draft, discard: Callable[[], None]) -> None:
-        """What was typed against the file, why some of it is refused, and what may be done with the rest."""
+        """What was typed against the file, and what may be done with it; a refused field says why itself."""
         text = self.text
-        for place, why in found.refused.items():
-            widgets.Message(f"{self._name(place)}: {text('gear.refused')}: {text.quoted(why)}", "error")
         if not found.accepted:
             if not found.refused:
                 widgets.note(text("gear.unchanged"))
@@ -176,11 +186,15 @@ class _GearPage:
             ]
             head = [text(f"gear.{key}") for key in ("setting", "in_file", "now", "change", "unit")]
             blocks.plain_table(text("gear.changed"), head, rows)
-        with widgets.row():
-            if found.accepted and not found.refused:
-                widgets.button(text("gear.save"), lambda: self._save(found), "save", primary=True)
+
+        def missing() -> str:
+            return self.without() or ("" if self.desk.typed else text("gear.unchanged"))
+
+        with blocks.buttons() as button:
+            if found.accepted:
+                button(missing, text("gear.save"), lambda: self._save(found), "save", primary=True)
             if self.desk.typed:
-                widgets.button(text("gear.discard"), discard, "undo")
+                button(str, text("gear.discard"), discard, "undo")
 
     def _name(self, place: Place) -> str:
         flanks, key = place
@@ -218,6 +232,7 @@ class _GearPage:
             )
             blocks.run_choice(self.shared, text)
             look = widgets.choice(text("gear.look"), kinds, "space", draw_as)
+        blocks.marked(lambda: self.no_run() or self.without())
         words = widgets.note("")
         no_webgl = widgets.Message()
         drawing = ui.element("div").classes("gm-follow")
@@ -225,7 +240,7 @@ class _GearPage:
 
         def show(found: Draft, anew: bool = False) -> None:
             seen[:], words.text = [found], self._words(found)
-            if self.plot is not None and found.view is not None and not anew:
+            if self.plot is not None and found.view is not None and not anew and not self.no_run():
                 self.plot.update_figure(self._space(found))  # the operator has turned it
                 return
             self.plot = None
@@ -246,6 +261,8 @@ class _GearPage:
 
     def _flanks(self, found: Draft) -> None:
         text, view = self.text, found.view
+        if self.no_run():
+            return
         if view is None:
             widgets.Message(text.quoted(found.no_view), "warning")
         elif self.look == "flat":
@@ -268,7 +285,7 @@ class _GearPage:
 
     def _words(self, found: Draft) -> str:
         """What is shown, its largest deviation, and how many times it is enlarged."""
-        if found.view is None:
+        if found.view is None or self.no_run():
             return ""
         member, largest = self.text(f"blocks.{found.member.name}"), f"{found.view.largest_um:z.1f}"
         if float(largest) == 0.0:
@@ -284,13 +301,15 @@ class _GearPage:
         def of_now() -> Hashable:
             return self.key(), desk.assembly
 
+        def missing() -> str:
+            return self.no_run() or self.without() or blocks.refused(text, fields.values())
+
         def begin() -> None:
-            widgets.numbers(fields)  # raises where one of them is refused
             desk.wanted["contact"] = of_now()
 
         def key() -> Hashable:
-            now = of_now()
-            return now if desk.wanted.get("contact") == now and desk.of("gear.draft").has(self.key()) else None
+            now, is_there = of_now(), desk.of("gear.draft").has(self.key()) and not missing()
+            return now if desk.wanted.get("contact") == now and is_there else None
 
         def compute() -> Callable[[Progress], Any]:
             found: Draft = desk.of("gear.draft").work.result
@@ -301,7 +320,8 @@ class _GearPage:
         widgets.note(text("gear.contact_of"))
         self._assembly(fields)
         widgets.note(text("gear.nominal"))
-        widgets.button(text("gear.compute"), begin, "play_arrow", primary=True)
+        with blocks.buttons() as button:
+            button(missing, text("gear.compute"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,
             desk.of("gear.contact"),
@@ -343,7 +363,7 @@ class _GearPage:
             numbers = (one["contact_ratio"], one["peak_to_peak_arcsec"], 100 * one["pattern"]["share"])
             shown = ("–" if value is None else f"{value:z.2f}" for value in numbers)
             rows.append([text(f"gear.{side}"), *shown, words.get(one["outcome"], one["outcome"])])
-        head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / arcsec"]
+        head = [text("gear.side"), f"{text('gear.ratio')} / 1", f"{text('gear.error')} / {text('units.arcsec')}"]
         at = "V {:z.10g}, H {:z.10g}, J {:z.10g} mm".format(*self.desk.assembly)  # a field may hold what is refused
         blocks.plain_table(at, [*head, f"{text('gear.share')} / %", text("gear.outcome")], rows)
         blocks.chart(text, svg, text("gear.contact"), across=True)

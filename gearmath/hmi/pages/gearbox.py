@@ -57,6 +57,21 @@ class _GearboxPage:
 
     def __init__(self, shared: Shared, text: Text) -> None:
         self.shared, self.text, self.desk = shared, text, shared.desk
+        self.fields: list[widgets.NumberField] = []
+        """What is to be cut, as it is typed on this page."""
+
+    def outdated(self) -> str:
+        """Which fields are refused: what is planned is not what stands there."""
+        return blocks.refused(self.text, self.fields)
+
+    def no_plan(self, of_gear: bool = False) -> str:
+        """Why nothing can be made of the plan."""
+        work = self.desk.of("gearbox").work
+        if said := self.outdated():
+            return said
+        if of_gear and work.result is not None and isinstance(work.result[1].plan, ThreadPlan):
+            return self.text("gearbox.no_class")
+        return "" if work.result is not None else self.text("gearbox.no_plan")
 
     def key(self) -> Any:
         """What is planned."""
@@ -69,7 +84,8 @@ class _GearboxPage:
 
     def kept(self, draw: Callable[[tuple[HobbingMachine, Job]], object]) -> None:
         """A part that shows the plan, or why there is none."""
-        blocks.kept(self.text, self.desk.of("gearbox"), self.key, self.text("gearbox.planning"), self.compute, draw)
+        found, name = self.desk.of("gearbox"), self.text("gearbox.planning")
+        blocks.kept(self.text, found, self.key, name, self.compute, draw, outdated=self.outdated)
 
     def wish(self, **changes: Any) -> None:
         """Ask for something else."""
@@ -94,10 +110,10 @@ class _GearboxPage:
         text, wish = self.text, self.desk.wish
         machine = load_hobber(find(self.desk.hobber))
         hands = {hand: text(f"gear.{hand}") for hand in ("right", "left")}
+        self.fields.clear()
         starts = wish.starts or (1 if machine.profile == "lathe" else machine.hob_starts)
         if machine.profile == "lathe":
-            pitch = ui.input(text("gearbox.pitch"), value=wish.pitch or "").classes("gm-number")
-            pitch.props('outlined dense autocomplete="off"').props["hint"] = text("gearbox.pitch_like")
+            pitch = widgets.word(text("gearbox.pitch"), wish.pitch or "", text("gearbox.pitch_like"))
             pitch.on("change", lambda: self.wish(pitch=pitch.value))
             self._number("starts", starts, "", 0)
             widgets.choice(text("gearbox.hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
@@ -114,19 +130,13 @@ class _GearboxPage:
             cuts = {cut: text(f"gearbox.{cut}") for cut in ("climb", "conventional")}
             widgets.choice(text("gearbox.cut"), cuts, wish.cut, lambda cut: self.wish(cut=cut))
             if machine.feed is None:
-                feed = ui.input(text("gearbox.feed"), value=wish.feed).classes("gm-number")
-                feed.props('outlined dense suffix="mm" autocomplete="off"')
+                feed = widgets.word(text("gearbox.feed"), wish.feed, text("gearbox.feed_like")).props('suffix="mm"')
                 feed.on("change", lambda: self.wish(feed=feed.value))
-        widgets.NumberField(
-            text,
-            text("gearbox.rpm"),
-            wish.rpm,  # left out, it is what the plan proposes
-            "1/min",
-            0.0,
-            machine.limits.hob_rpm,
-            lambda rpm: self.wish(rpm=rpm),
-            2,
+        most, label = machine.limits.hob_rpm, text("gearbox.rpm")  # left out, it is what the plan proposes
+        rpm = widgets.NumberField(
+            text, label, wish.rpm, "1/min", 0.01, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True
         )
+        self.fields.append(rpm)
 
     def _number(self, key: str, value: float | None, unit: str, digits: int) -> None:
         low, high = FIELDS[key]
@@ -134,7 +144,8 @@ class _GearboxPage:
         def changed(number: float) -> None:
             self.wish(**{key: int(number) if digits == 0 else number})
 
-        widgets.NumberField(self.text, self.text(f"gearbox.{key}"), value, unit, low, high, changed, digits)
+        label = self.text(f"gearbox.{key}")
+        self.fields.append(widgets.NumberField(self.text, label, value, unit, low, high, changed, digits))
 
     def plan(self) -> None:
         """Ratio and rates against their limits, and the firmware."""
@@ -210,11 +221,12 @@ class _GearboxPage:
             widgets.note(f"{text('gearbox.whole_class')}: {'–' if whole is None else whole}")
             widgets.Message(text("gearbox.unconfirmed"), "warning")
 
-        widgets.button(text("gearbox.predict"), begin, "play_arrow", primary=True)
+        with blocks.buttons() as button:
+            button(lambda: self.no_plan(of_gear=True), text("gearbox.predict"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,
             desk.of("gearbox.quality"),
-            lambda: self.key() if desk.wanted.get("quality") == self.key() else None,
+            lambda: self.key() if desk.wanted.get("quality") == self.key() and not self.outdated() else None,
             text("gearbox.cutting"),
             compute,
             show,
@@ -228,20 +240,25 @@ class _GearboxPage:
             edges = widgets.NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
             start = widgets.NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
 
+        def missing() -> str:
+            return self.no_plan() or blocks.refused(text, (edges, start))
+
         def begin() -> None:
-            if edges.value is not None and start.value is not None:
-                desk.wanted["gearbox"] = (self.key(), int(edges.value), int(start.value))
+            assert edges.value is not None
+            assert start.value is not None
+            desk.wanted["gearbox"] = (self.key(), int(edges.value), int(start.value))
 
         def key() -> Any:
             wanted: Any = desk.wanted.get("gearbox")
-            return wanted if wanted is not None and wanted[0] == self.key() else None
+            return wanted if wanted is not None and wanted[0] == self.key() and not missing() else None
 
         def compute() -> Callable[[Progress], str]:
             wanted: Any = desk.wanted["gearbox"]
             (name, wish), count, first = wanted
             return lambda progress: _error(name, wish, count, first, progress)
 
-        widgets.button(text("gearbox.simulate"), begin, "play_arrow", primary=True)
+        with blocks.buttons() as button:
+            button(missing, text("gearbox.simulate"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,
             desk.of("gearbox.error"),

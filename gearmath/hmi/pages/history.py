@@ -37,7 +37,7 @@ def build(shared: Shared, text: Text) -> None:
 
 def _list(text: Text, runs: list[PastRun]) -> None:
     if not runs:
-        widgets.note(text("blocks.no_run"))
+        widgets.note(text("history.no_run"))
         return
     rows = []
     for one in runs:
@@ -72,15 +72,7 @@ def _comparison(shared: Shared, text: Text) -> None:
 
     def choices() -> None:
         runs = {str(one.run): blocks.run_name(text, one) for one in reversed(desk.runs.of_members())}
-        if len(runs) < 2:
-            widgets.note(text("history.too_few"))
-            return
-        shown = str(_other(shared))
-        widgets.choice(text("history.with"), runs, shown, other)
-
-    with widgets.row():
-        blocks.run_choice(shared, text)
-        blocks.follow(lambda: (_other(shared), len(desk.runs.of_members())), choices)
+        widgets.choice(text("history.with"), runs, str(_other(shared)), other)
 
     def key() -> Hashable:
         pair = (desk.shown_run(), _other(shared))
@@ -90,21 +82,30 @@ def _comparison(shared: Shared, text: Text) -> None:
         pair: Any = (desk.shown_run(), _other(shared))
         return lambda progress: _compared(desk.runs, pair, progress)
 
-    blocks.kept(
-        text,
-        desk.of("history.comparison"),
-        key,
-        text("history.comparing"),
-        compute,
-        lambda found: _compare(text, *found),
-        text("history.choose_two"),
-    )
+    def compared() -> None:
+        if len(desk.runs.of_members()) < 2:
+            widgets.note(text("history.too_few"))
+            return
+        with widgets.row():
+            blocks.run_choice(shared, text)
+            blocks.follow(lambda: (_other(shared), len(desk.runs.of_members())), choices)
+        blocks.kept(
+            text,
+            desk.of("history.comparison"),
+            key,
+            text("history.comparing"),
+            compute,
+            lambda found: _compare(text, *found),
+            text("history.choose_two"),
+        )
+
+    blocks.follow(lambda: len(desk.runs.of_members()) < 2, compared)
 
 
 def _compare(text: Text, found: Comparison, svg: str, _: list[str]) -> None:
     names = blocks.flank_names(text)
     for sentence in found.differs:
-        widgets.note(sentence)
+        widgets.note(text.quoted(sentence))
     rows = []
     for row in found.figures:
         cells = [
@@ -122,18 +123,26 @@ def _trend(shared: Shared, text: Text) -> None:
     """Every figure over the last runs of the member of the run that is shown, when somebody asks."""
     desk = shared.desk
 
+    def now() -> Hashable:
+        return desk.shown_run(), tuple(one.run for one in desk.runs.of_members())
+
+    def missing() -> str:
+        runs = {one.run: one.member for one in desk.runs.of_members()}
+        alike = [run for run, member in runs.items() if member == runs.get(desk.shown_run() or 0)]
+        return "" if len(alike) > 1 else text("history.too_few_for_trend")
+
     def key() -> Hashable:
-        now = (desk.shown_run(), tuple(one.run for one in desk.runs.of_members()))
-        return now if desk.wanted.get("trend") == now else None
+        return now() if desk.wanted.get("trend") == now() else None
 
     def begin() -> None:
-        desk.wanted["trend"] = (desk.shown_run(), tuple(one.run for one in desk.runs.of_members()))
+        desk.wanted["trend"] = now()
 
     def compute() -> Callable[[Progress], _Drawn]:
         run: Any = desk.shown_run()
         return lambda progress: _drawn_trend(desk.runs, run, progress)
 
-    widgets.button(text("history.show_trend"), begin, "show_chart", primary=True)
+    with blocks.buttons() as button:
+        button(missing, text("history.show_trend"), begin, "show_chart", primary=True)
     blocks.kept(
         text,
         desk.of("history.trend"),

@@ -19,7 +19,7 @@ def build(shared: Shared, text: Text) -> None:
     """The content of the page."""
     desk = shared.desk
     with widgets.panel(text("result.run"), wide=True):
-        blocks.run_choice(shared, text)
+        blocks.run_choice(shared, text, text("blocks.no_run"))
 
     def compute() -> Callable[[Progress], ResultView]:
         run = desk.shown_run()

@@ -46,14 +46,20 @@ def test_a_setting_that_is_refused_stays_as_typed_with_the_reason_and_a_good_one
     one.fill("Cutter swivel, convex", "400")
     one.sees("400 °: must lie between -360 and 360 °", settings)
     one.fill("Cutter tilt, convex", "44")
-    settings.get_by_text(re.compile("Cutter tilt, convex: refused: pinion")).wait_for(timeout=PATIENCE)
+    why = settings.get_by_text("its pressure angle at the mean point", exact=False)
+    why.first.wait_for(timeout=PATIENCE)
+    assert why.count() == 1  # at its field, and not once more
+    refused = "Refused, the field says why: Cutter tilt, convex; Cutter swivel, convex. What is shown is without it."
+    for part in ("Settings", "Flanks of a tooth", "Contact of the pair"):
+        one.sees(refused, one.panel(part))
+    expect(one.page.get_by_role("button", name="Compute contact")).to_be_disabled()
     assert one.page.get_by_label("Cutter tilt, convex", exact=True).input_value() == "44"
     one.fill("Sliding base, concave", "0,36")
     settings.get_by_text("Changed against the file").wait_for(timeout=PATIENCE)
     row = settings.get_by_role("row").filter(has_text="Sliding base, concave").inner_text().split()
     assert row[-5:] == ["concave", "0.296487", "0.360000", "+0.063513", "mm"]
     assert one.page.get_by_label("Cutter swivel, convex", exact=True).input_value() == "400"
-    assert one.page.get_by_role("button", name="Save as new set").count() == 0
+    expect(one.page.get_by_role("button", name="Save as new set")).to_be_disabled()
     other = operator(served)  # a second page shows the same
     other.context.add_init_script(_NO_WEBGL)
     other.go("gear")
@@ -149,8 +155,9 @@ def test_the_pair_is_brought_into_contact_at_the_assembly_that_is_typed(
     panel = one.panel("Tragbild des Paars")
     panel.get_by_label("V: Achse des Rads versetzt", exact=True).wait_for(timeout=PATIENCE)
     one.fill("V: Achse des Rads versetzt", "50,1")
-    one.press("Tragbild berechnen")
-    one.sees("V: Achse des Rads versetzt: 50,1 mm: muss zwischen -50 und 50 mm liegen")
+    one.sees("50,1 mm: muss zwischen -50 und 50 mm liegen")
+    one.sees("Abgelehnt, den Grund nennt das Feld: V: Achse des Rads versetzt.", panel)
+    expect(panel.get_by_role("button", name="Tragbild berechnen")).to_be_disabled()
     assert panel.get_by_text("50.1").count() == 0
     one.fill("V: Achse des Rads versetzt", "0")
     one.fill("H: Ritzel zurückgezogen", "10")
@@ -175,8 +182,9 @@ def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_acc
     one = operator(served, "correct")
     one.page.get_by_role("combobox", name="Run", exact=True).click()
     one.page.get_by_role("option").filter(has_text=re.compile("^1: ")).click()
-    one.press("Accept: write new set and program")
     none = one.sees("There is no correction of this run yet: compute it first.")
+    for label in ("Accept: write new set and program", "Reject"):
+        expect(one.page.get_by_role("button", name=label)).to_be_disabled()
     one.sees("As measured")
     with served.timed("compensation, from the button to the picture", 2.0):
         one.press("Compute correction")
@@ -221,10 +229,15 @@ def test_a_job_is_planned_refused_simulated_and_its_firmware_taken(
     one.sees("544/125")  # 4096 counts x 17 teeth over 16000 steps of the table
     one.fill("Teeth", "17.5")
     one.sees("must be a whole number")
+    one.sees("Refused, the field says why: Teeth.", one.panel("Plan"))
+    expect(one.page.get_by_text("544/125")).to_have_count(0)  # of another job than the one that is typed
     one.fill("Teeth", "34")
     one.sees("1088/125")
     one.fill("Speed of hob or spindle", "9000")
-    one.sees(re.compile("must lie between 0 and 800 1/min"))
+    one.sees(re.compile("must lie between 0.01 and 800 1/min"))
+    expect(one.page.get_by_role("button", name="Simulate")).to_be_disabled()
+    one.fill("Speed of hob or spindle", "")  # the one that the plan proposes
+    one.sees("1088/125")
     one.fill("Encoder edges", "20000")
     one.press("Simulate")
     one.panel("Error of the step rule over time").locator("svg").first.wait_for(timeout=PATIENCE)

@@ -53,10 +53,20 @@ def test_what_the_machine_cannot_do_is_refused_with_the_limit() -> None:
     machine = load_hobbing_machine(bundled("hobbing_metric.toml"))
     with pytest.raises(InputError, match=r"limits\.hob_rpm"):
         planned(machine, HobbingWish(teeth=40, rpm=1e5))
-    with pytest.raises(InputError, match="feed = 'x': must be a number"):
-        planned(machine, HobbingWish(teeth=40, hob=machine.hobs[0].name, helix=10.0, feed="x"))
+    for feed in ("x", "5/0", "1e999999999"):  # of the last not even the digits are counted
+        with pytest.raises(InputError, match=f"feed = '{feed}': must be a number"):
+            planned(machine, HobbingWish(teeth=40, hob=machine.hobs[0].name, helix=10.0, feed=feed))
     with pytest.raises(InputError, match="pitch"):
         planned(load_hobbing_machine(bundled("lathe_example.toml")), HobbingWish(pitch="fine"))
+
+
+def test_a_decimal_comma_is_a_decimal_point_in_pitch_and_feed() -> None:
+    lathe, machine = (load_hobbing_machine(bundled(name)) for name in ("lathe_example.toml", "hobbing_metric.toml"))
+    threads = [planned(lathe, HobbingWish(pitch=pitch)).plan for pitch in ("1,25mm", "1.25mm")]
+    assert threads[0] == threads[1]
+    hob = machine.hobs[0].name
+    gears = [planned(machine, HobbingWish(teeth=40, hob=hob, helix=10.0, feed=feed)).plan for feed in ("0,5", "1/2")]
+    assert gears[0] == gears[1]
 
 
 def test_a_helical_gear_has_the_lead_of_its_helix_at_the_pitch_circle() -> None:

@@ -30,6 +30,11 @@ _CUT = """() => { const cut = [], texts = document.createTreeWalker(document.bod
     if (new Set([...range.getClientRects()].map(box => Math.round(box.top))).size > 1) cut.push(word[0]);
   }
   return cut; }"""
+#: What cannot be done with an empty store, by page and button, and the sentence that stands beside it.
+_MISSING = {
+    "correct": dict.fromkeys(("correct.compute", "correct.accept", "correct.reject"), "blocks.no_run"),
+    "history": {"history.show_trend": "history.too_few_for_trend"},
+}
 LOOKS = [("en", False, (1280, 800)), ("de", True, (800, 1280))]
 
 
@@ -59,6 +64,11 @@ def test_every_page_shows_itself_without_serious_violation_of_accessibility(
         )
         assert small == [], name
         assert one.page.evaluate(_CUT) == [], name
+        for label, why in _MISSING.get(name, {}).items():  # the store is empty
+            button = one.page.get_by_role("button", name=text(label), exact=True)
+            expect(button).to_be_disabled()
+            said = one.page.locator(f"#{button.get_attribute('aria-describedby')}")
+            expect(said).to_have_text(text(why))
 
 
 def test_the_address_that_is_shown_lets_the_browser_in(served: Served, operator: Callable[..., Operator]) -> None:

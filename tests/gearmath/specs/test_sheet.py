@@ -170,7 +170,7 @@ def test_every_length_and_no_other_number_is_taken_as_inches():
         (
             "blade_point_radius = 2.96562137806",
             "blade_point_radius = 15.0",
-            "pinion: concave.blade_point_radius = 15: no real contact, .* between -0.4516 and 6.834",
+            "pinion: concave: no real contact, .*, or blade_point_radius = 15 between -0.4516 and 6.834",
         ),
         (
             "blade_profile_height = 0.5",
