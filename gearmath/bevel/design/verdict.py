@@ -113,12 +113,12 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
                 f"{name}: top land of {land[place]:.3g} mm at the {place}: must be at least {LEAST_LAND * module:.3g} "
                 f"mm, {LEAST_LAND:g} of the mean normal module; thickness_factor or mean_addendum_factor must change"
             )
-    cuts = {name: undercut(made.pair.member(name), name) for name in lands}
-    _check_undercut(cuts)
     ridges = {name: ridge(made.pair.member(name), tooth_space(made.pair.member(name), name)) for name in lands}
     for name, height in ridges.items():
         if made.pair.member(name).process == "face_hobbing":
             _check_tips(made.pair.member(name), name, height)
+    cuts = {name: undercut(made.pair.member(name), name) for name in lands}
+    _check_undercut(cuts)
     figures: dict[str, Any] = {
         "cutter_radius_mm": made.blank_data.cutter.cutter_radius,
         "mean_normal_module_mm": module,

@@ -37,10 +37,9 @@ def check_counting(name: str, machine: MillingMachine) -> None:
     modulo = [axis for axis, spec in specs if spec is not None and spec.modulo]
     if modulo:
         turning, keys = " and ".join(modulo), " and ".join(f"axes.{axis}" for axis in modulo)
-        where = "they are modulo axes" if modulo[1:] else "it is a modulo axis"
         raise InputError(
             f"{name}: blocks = poly: a block of face hobbing turns {turning} through many turns, and no manual at hand "
-            f"says what a control makes of that where {where}: write straight blocks, or where the control counts "
+            f"says what a control makes of that on a modulo axis: write straight blocks, or where the control counts "
             f"{turning} on, say so in the file of {machine.name}: modulo = false and travel in {keys}; "
             "vertical_5axis_counting.toml is such a machine"
         )

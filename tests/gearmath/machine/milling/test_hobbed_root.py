@@ -77,7 +77,7 @@ def path() -> MachinePath:
 
 
 def path_of(cut: BevelSet) -> MachinePath:
-    job = CuttingJob(range(cut.member("pinion").teeth), tolerance=5e-4)
+    job = CuttingJob(range(cut.member("pinion").teeth), tolerance=3e-4)
     return execute(cutting_program(cut, "pinion", machine(), "HOB", job), "HOB.MPF")
 
 
