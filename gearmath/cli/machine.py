@@ -112,6 +112,8 @@ def cut(
     if note := one.gear_set.edge_note():
         click.echo(f"note: {note}")
     click.echo(f"{made.save(target)}: {len(job.spaces)} of {one.teeth} spaces, {made.blocks} blocks")
+    if one.spec.process == "face_hobbing":
+        click.echo("note: the tolerance holds for the flanks; fillets keep more, which `gearmath mill --report` gives")
     if configuration and made.made is not None:
         write_configuration(target, dialect, on.spec, tools_of(made.made.plan))
     if sheet is not None and page is not None:

@@ -76,10 +76,11 @@ def mill(
     from gearmath.front.machines import load_machine, load_shop
     from gearmath.front.programs import Program
     from gearmath.front.sets import load_set
-    from gearmath.machine.control.text import program_text, skip_blocks
+    from gearmath.machine.control.text import check_moves, program_text, skip_blocks
     from gearmath.machine.judging.stated import Stated, stated_member
 
     pair, text = load_set(gear_set), program_text(program)
+    check_moves(text, str(program))
     one, on = member_of(pair, member, stated_member(text)), load_machine(machine)
     shop = load_shop(errors) if errors else None
     made = Program(one, on, str(program), text)

@@ -75,6 +75,7 @@ class Setup:
             machine.tool_length if tip else 0.0,
             probe_length if tip else 0.0,
             work_offset=machine.work_offset,
+            increments=(machine.control.increments_per_mm, machine.control.increments_per_degree),
             result_file_kB=machine.control.result_file_kB or Setup.result_file_kB,
         )
 

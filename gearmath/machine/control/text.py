@@ -29,6 +29,7 @@ _NO_TEXT = re.compile(r"\r(?!\n)|[^\t\n\r\x20-\x7e\x80-\U0010ffff]")
 #: The line of the head by which a program says that it is for LinuxCNC.
 LINUXCNC_MARK = "; control: LinuxCNC"
 _FOR_LINUXCNC = re.compile(rf"^{LINUXCNC_MARK}[ \t]*$", re.MULTILINE)
+_MOVES = re.compile(r"^[^;(\n]*(?<![A-Z_$])[XYZAB]\s*[-+=.\[#0-9]", re.MULTILINE | re.IGNORECASE)
 _SKIP = re.compile(r"^[ \t]*/", re.MULTILINE)
 
 
@@ -53,6 +54,12 @@ def program_text(path: Path) -> str:
     text = decoded(read_bytes(path), str(path))
     _check_characters(text, str(path))
     return readable(text.replace("\r\n", "\n"))
+
+
+def check_moves(text: str, name: str) -> None:
+    """Raises InputError for a text without any word of an axis outside comments, which is no program that cuts."""
+    if not _MOVES.search(text):
+        raise InputError(f"{name}: moves no axis, so that it is no cutting program")
 
 
 def decoded(content: bytes, name: str) -> str:

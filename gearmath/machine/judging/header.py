@@ -9,7 +9,7 @@ from gearmath.machine.judging.faults import Fault
 from gearmath.machine.judging.stated import Stated
 from gearmath.machine.planning.path import Cut
 from gearmath.machine.planning.setup_facts import BlankSizes, blade_words, member_note, work_notes, z_note
-from gearmath.specs.bevel_set import Member
+from gearmath.specs.bevel_set import Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
 
 
@@ -18,8 +18,11 @@ def header_faults(text: str, member: Member, name: str, machine: MillingMachine)
 
     And what a program of ours does not say, so that less could be judged.
     """
-    if unsaid := Stated.of(text).unsaid:
-        yield Fault(f"the header does not state: {', '.join(unsaid)}")
+    stated = Stated.of(text)
+    if stated.unsaid:
+        yield Fault(f"the header does not state: {', '.join(stated.unsaid)}")
+    if stated.doubled:
+        yield Fault(f"the header states more than once: {', '.join(stated.doubled)}")
     wanted = dict(_statements(member, name, machine))
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith(";"):
@@ -41,7 +44,8 @@ def _differing(said: str, known: str) -> tuple[str, str]:
 
 def _statements(member: Member, name: str, machine: MillingMachine) -> Iterator[tuple[str, str]]:
     """What a line begins with, and the whole of it."""
-    notes = [member_note(member, name), z_note(machine), *work_notes(BlankSizes.of(member, machine), machine)]
+    notes = [f"machine settings sha256: {settings_sha256(member)}", member_note(member, name), z_note(machine)]
+    notes += work_notes(BlankSizes.of(member, machine), machine)
     for cut in Cut.of(member, name):
         notes += [f"tool {cut.tool}, {flank}: {blade_words(member.flank(flank))}" for flank in cut.flanks]
     for note in notes:

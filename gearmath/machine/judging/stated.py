@@ -19,6 +19,15 @@ _FEED = re.compile(r"^; feed: ([0-9.]+) mm/min at the tooth", re.MULTILINE)
 _SPINDLE = re.compile(r"^; spindle: ([0-9.]+) rpm(?:.*plunge: ([0-9.]+) mm/min)?", re.MULTILINE)
 #: What a program of ours must say: without it, less is judged.
 _JUDGED_BY = {"flank tolerance": _TOLERANCE, "finish": _FINISH, "feed": _FEED, "spindle": _SPINDLE, "spaces": _SPACES}
+#: What no program says twice; spaces may take several lines.
+_SAID_ONCE = {
+    "flank tolerance": _TOLERANCE,
+    "finish": _FINISH,
+    "feed": _FEED,
+    "spindle": _SPINDLE,
+    "member": _MEMBER,
+    "dry run": _DRY_RUN,
+}
 
 
 @dataclass(frozen=True)
@@ -41,6 +50,8 @@ class Stated:
     """How far above its cut a dry run stays."""
     unsaid: tuple[str, ...] = ()
     """What a program of ours is judged by, and does not say."""
+    doubled: tuple[str, ...] = ()
+    """What it says more than once: which of them holds, nobody knows."""
 
     @staticmethod
     def of(text: str) -> Stated:
@@ -60,6 +71,7 @@ class Stated:
             ours and dry is None,
             float(dry[1]) if dry else 0.0,
             tuple(what for what, one in _JUDGED_BY.items() if ours and not one.search(text)),
+            tuple(what for what, one in _SAID_ONCE.items() if len(one.findall(text)) > 1),
         )
 
 

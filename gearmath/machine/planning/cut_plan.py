@@ -41,6 +41,8 @@ PLUNGE_FEED = 200.0
 #: A dry run keeps the cutter this far above its cut. [mm]
 DRY_LIFT = 60.0
 _MOST_STOCK = 5.0
+#: And with more feed, where the machine file states no limit [mm/min].
+_MOST_FEED = 100_000.0
 #: A roughing pass may deviate by this part of its stock.
 _ROUGH_SHARE = 0.05
 #: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
@@ -128,10 +130,13 @@ def cutting_plan(
 ) -> CuttingPlan:
     """All passes of a job on one member; ``progress`` hears of those that are planned.
 
-    Raises InputError for singular poses, travel and speed limits, a tolerance out of range, and a face hobbed member
-    whose spaces are not all cut, or whose machine has no axis C.
+    Raises InputError for a feed beyond the machine's, singular poses, travel and speed limits, a tolerance out of
+    range, and a face hobbed member whose spaces are not all cut, or whose machine has no axis C.
     """
-    member = bevel_set.member(name)
+    member, most = bevel_set.member(name), machine.max_feed_per_min or _MOST_FEED
+    if job.feed > most:
+        limit = f"max_feed_per_min of {machine.name}" if machine.max_feed_per_min else "the limit"
+        raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, {limit}")
     head, space = machine.cutter_head, None if member.cutting == "completing" else tooth_space(member, name, 7)
     room = room_of(member, machine, machine.fixture)
     radius = max(widest(cutter_of(member, cut.flanks, space, 0.0), head) for cut in Cut.of(member, name))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearmath.bevel.tooth import SHARP_EDGE, tooth_space
+from gearmath.errors import InputError
 from gearmath.machine.control.executor import execute
 from gearmath.machine.control.state import Setup
 from gearmath.machine.judging.program import faults_of, metal_faults
@@ -211,3 +212,25 @@ def test_lines_of_the_header_changed_one_by_one_hide_no_gouge():
             assert said, changed
             tried += 1
     assert tried > 10
+
+
+def test_a_header_that_says_a_figure_twice_or_settings_of_another_set_is_refused():
+    text = written(NASA)
+    twice = bent(text, r"^(; flank tolerance: )0\.1( um.*\n)", r"\g<1>50\2\g<0>")
+    assert "the header states more than once: flank tolerance" in judged(NASA, twice)[0]
+    other = bent(text, r"^; machine settings sha256: \w{9}", "; machine settings sha256: 123456789")
+    said, _ = judged(NASA, other)
+    assert any("machine settings sha256: 123456789" in one and "the files of set and machine" in one for one in said)
+
+
+def test_a_program_stops_on_a_control_that_has_fewer_increments_than_it_was_written_for():
+    """The machine file tells what the control has: 1000 per mm, where the program asks for 100 000 before it moves."""
+    with pytest.raises(InputError, match="alarm 65011: MN_INT_INCR_PER_MM is less than 100000"):
+        execute(written(NASA), "CUT", Setup.of(COARSE))
+
+
+def test_feed_beyond_that_of_the_machine_is_refused():
+    with pytest.raises(InputError, match=r"^feed = 2001 mm/min: must be at most 2000, max_feed_per_min of "):
+        written(NASA, LIMITED, feed=2001.0)
+    with pytest.raises(InputError, match=r"^feed = 1e\+09 mm/min: must be at most 100000, the limit$"):
+        written(NASA, FREE, feed=1e9)
