@@ -205,6 +205,12 @@ def test_file_name_that_is_no_program_name_is_refused(refused, tmp_path, name):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_text_without_motion_is_told_before_a_member_is_asked_for(refused, tmp_path):
+    (tmp_path / "EMPTY.MPF").write_text("; X1 Y2\nN10 M30\n", "ascii")
+    told = r"EMPTY\.MPF: moves no axis, so that it is no cutting program"
+    refused(told, "mill", SET, "--program", tmp_path / "EMPTY.MPF", "-o", tmp_path / "m.csv")
+
+
 def test_bad_milling_is_one_line_and_writes_nothing(refused, tmp_path, pinion_program):
     target = tmp_path / "out" / "m.csv"
     target.parent.mkdir()

@@ -220,7 +220,7 @@ def test_feeds_keep_speed_acceleration_and_jerk_of_every_axis():
             for axis in "XYZAB"
         }
     )
-    machine = MACHINE.model_copy(update={"axes": axes})
+    machine = MACHINE.model_copy(update={"axes": axes, "max_feed_per_min": None})
     text = made(*ROLLING[5], machine, CuttingJob((0,), feed=20000.0, blocks="poly"))
     per_internal = np.array([1, 1, 1, 180 / math.pi, 180 / math.pi])
     used = []
