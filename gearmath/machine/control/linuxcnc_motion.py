@@ -173,6 +173,8 @@ class LinuxCncMotion:
         state = self.control
         for code, sense in (("M3", 1), ("M4", -1), ("M5", 0)):
             if code in codes:
+                if state.sense and not sense:
+                    self._halt(line, False)
                 state.sense = sense
                 state.position.pop(CUTTER_AXIS, None)
         if "M8" in codes or "M9" in codes:

@@ -45,8 +45,8 @@ Watch = Callable[[Moment], object]
 
 
 class Halt(NamedTuple):
-    """A dwell, a wait for the axes or a stop, and how many rows of the path, and moves before the position was known,
-    lie before it."""
+    """A dwell, a wait for the axes, a spindle that is switched off or a stop, and how many rows of the path, and moves
+    before the position was known, lie before it."""
 
     line: int
     stop: bool
@@ -190,6 +190,7 @@ class StatementRunner:
     def _block(self, block: Block) -> None:
         for target, value in block.assignments:
             self._assign(target, self._number(value, block.line, target.column), block.line)
+        turning = self.control.spindle_on
         row = self.control.run(block, lambda node, column: self._number(node, block.line, column))
         for part in row.parts() if row is not None else ():
             self.rows.append(part)
@@ -201,6 +202,8 @@ class StatementRunner:
         for key in ("dwell", "program stop"):
             if key in block.words:
                 self.halts.append(self._halt(block, key))
+        if turning and not self.control.spindle_on:
+            self.halts.append(Halt(block.line, False, len(self.rows), len(self.control.blind)))
         if "dwell" in block.words and self.host is not None:
             self._pending.update(self.host(dict(self.parameters)))
 

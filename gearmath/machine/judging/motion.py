@@ -55,7 +55,9 @@ def states(path: MachinePath, machine: MillingMachine) -> Iterator[Fault]:
 
 
 def waiting(path: MachinePath) -> Iterator[Fault]:
-    """Dwells and stops with the cutter in the cut: between two feed blocks, and a stop after the last one too."""
+    """Dwells, stops and a spindle that is switched off with the cutter in the cut: between two feed blocks, and a stop
+    after the last one too.
+    """
     for halt in path.halts:
         before, after = halt.rows - 1, halt.rows
         if before < 0 or path.rapid[before] or path.measuring[before]:

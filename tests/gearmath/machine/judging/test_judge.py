@@ -95,6 +95,7 @@ def test_exact_stop_needs_no_tolerance_of_the_path_and_g642_does(gear_set, verti
         (r"^N\d+ M8\n", "", r"line \d+ cuts without coolant \(M8\)"),
         (r"(G93 G1 .*\n)(N\d+ G93 G1)", r"\1G4 F0.5\n\2", r"line \d+ lets the cutter stand in the cut"),
         (r"(G93 G1 .*\n)(N\d+ G93 G1)", r"\1M0\n\2", r"line \d+ lets the cutter stand in the cut"),
+        (r"(G93 G1 .*\n)(N\d+ G93 G1)", r"\1M5\nS120 M3\n\2", r"line \d+ lets the cutter stand in the cut"),
         (r"(G93 G1 .*\n)(N\d+ G94 G0)", r"\1M0\n\2", r"line \d+ lets the cutter stand in the cut"),
         (
             r"^(; tool GEAR, concave: point radius) \d+",

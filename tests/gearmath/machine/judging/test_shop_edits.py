@@ -89,6 +89,7 @@ LINUXCNC = [
     (r" Q0$", " Q0.1", r"line \d+ cuts with CTOL=0\.1"),
     (r"^G4 P3\.0", "G4", "G4 without a time P"),
     (r"^(G1 X.*\n)(G1 X)", r"\1%\n\2", "% ends the program"),
+    (r"^(G1 X.*\n)(G1 X)", r"\1M5\nM3 S120\n\2", r"line \d+ lets the cutter stand in the cut"),
     (r"^(G1 X.*\n)(G1 X)", r"\1M66 P1 L0\n\2", r"line \d+ lets the cutter stand in the cut"),
     (r"^(G1 X.*\n)(G1 X)", r"\1M68 E0 Q1\n\2", r"line \d+ lets the cutter stand in the cut"),
     (r"^(G1 X.*\n)(G1 X)", r"\1/\2", "is not understood"),
