@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
@@ -23,7 +24,6 @@ from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
-from gearmath.specs.bevel_set import load_bevel_set
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.toml import find
 from gearmath.specs.touch_csv import planned_touches
@@ -106,8 +106,19 @@ def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Pr
 
 
 def teeth(choice: Choice) -> int:
-    """How many the chosen member has, by its file, which need not be a pair that can be cut. Raises InputError."""
-    return load_bevel_set(find(choice.gear_set)).member(choice.member).teeth
+    """How many the chosen member has. Raises InputError where its set is refused."""
+    path = find(choice.gear_set)
+    try:
+        changed = path.stat().st_mtime_ns
+    except OSError:
+        changed = 0  # what is wrong with the file is said where it is read
+    return _teeth(choice.gear_set, choice.member, changed)
+
+
+@lru_cache(maxsize=8)
+def _teeth(gear_set: str, member: str, changed: int) -> int:
+    """The same of a file as it was ``changed`` last [ns]: pages ask every second, and to check a pair takes long."""
+    return load_set(gear_set).member(member).teeth
 
 
 def programs(folder: Path) -> list[ListedProgram]:
