@@ -133,9 +133,10 @@ def cutting_plan(
     Raises InputError for a feed beyond the machine's, singular poses, travel and speed limits, a tolerance out of
     range, and a face hobbed member whose spaces are not all cut, or whose machine has no axis C.
     """
-    member, most = bevel_set.member(name), machine.max_feed_per_min or _MOST_FEED
-    if job.feed > most:
-        limit = f"max_feed_per_min of {machine.name}" if machine.max_feed_per_min else "the limit"
+    member = bevel_set.member(name)
+    of_machine = None if job.dry_run else machine.max_feed_per_min  # which is that of a cut
+    if job.feed > (most := of_machine or _MOST_FEED):
+        limit = f"max_feed_per_min of {machine.name}" if of_machine else "the limit"
         raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, {limit}")
     head, space = machine.cutter_head, None if member.cutting == "completing" else tooth_space(member, name, 7)
     room = room_of(member, machine, machine.fixture)
