@@ -1,6 +1,6 @@
 """A folder of files written in one step, with a manifest that says what is ours.
 
-A folder is replaced only where its own manifest lists every file in it: nobody's other work is ever deleted.
+A folder is replaced only where its own manifest lists every file in it, as it still is: nobody's work is ever deleted.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def new_folder(folder: Path) -> Iterator[Path]:
     """A place to build the content of ``folder`` in; on leaving, it gets a manifest and takes the place of the folder.
 
     If the body raises, nothing has happened. Raises InputError naming the first file that is not listed in the
-    manifest of an existing folder, or why the folder cannot be written.
+    manifest of an existing folder, or not as it was written, or why the folder cannot be written.
     """
     target = Path(os.path.abspath(folder))
     if Path.cwd().is_relative_to(target):
@@ -63,7 +63,7 @@ def manifest(files: Mapping[str, str]) -> str:
 
 
 def _manifest(contents: Mapping[str, bytes]) -> str:
-    hashes = {name: hashlib.sha256(contents[name]).hexdigest() for name in sorted(contents)}
+    hashes = {name: _sha256(contents[name]) for name in sorted(contents)}
     return json.dumps({"written_by": f"gearmath {__version__}", "sha256": hashes}, indent=2) + "\n"
 
 
@@ -90,15 +90,33 @@ def _exchange(beside: Path, target: Path) -> None:
 def _check_ours(folder: Path, target: Path) -> None:
     if target.is_symlink() or (target.exists() and not target.is_dir()):
         raise InputError(f"{folder}: is no folder")
-    ours = _listed(target)
-    foreign = [name for name in _names(target) if name not in ours]
-    if foreign:
-        raise InputError(f"{folder}: holds {foreign[0]}, which no {MANIFEST} of gearmath lists; name another folder")
+    known = _listed(target)
+    for name in _names(target):
+        if name == MANIFEST and known:
+            continue
+        if name not in known:
+            raise InputError(f"{folder}: holds {name}, which no {MANIFEST} of gearmath lists; name another folder")
+        if _sha256(_read(folder, target / name)) != known[name]:
+            raise InputError(
+                f"{folder}: {name} was changed since gearmath wrote it, and would be lost; move it away, or name "
+                "another folder"
+            )
 
 
-def _listed(target: Path) -> set[str]:
+def _listed(target: Path) -> dict[str, str]:
+    """The SHA-256 of the files of a folder, by name, by its manifest; none where there is no such."""
     try:
-        hashes = json.loads((target / MANIFEST).read_text("utf-8"))["sha256"]
-        return {MANIFEST, *hashes}
+        return dict(json.loads((target / MANIFEST).read_text("utf-8"))["sha256"])
     except (OSError, ValueError, KeyError, TypeError):
-        return set()
+        return {}
+
+
+def _read(folder: Path, path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise InputError(f"{folder}: {path.name} cannot be read: {error.strerror}") from error
+
+
+def _sha256(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()

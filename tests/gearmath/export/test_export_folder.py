@@ -33,6 +33,19 @@ def test_own_folder_is_replaced_whole_and_nothing_is_left_beside(tmp_path: Path)
     assert os.listdir(tmp_path) == ["out"]
 
 
+def test_file_that_was_edited_is_named_and_kept(tmp_path: Path) -> None:
+    write_folder(tmp_path / "out", {"README.md": "tick the rows off\n", "sub/a.h": "x\n", "gone.c": "1"})
+    (tmp_path / "out" / "README.md").write_text("RB1 = 220k\n")
+    (tmp_path / "out" / "gone.c").unlink()
+    before = content(tmp_path / "out")
+    with pytest.raises(InputError, match=r"out: README\.md was changed since gearmath wrote it, .* move it away, or"):
+        write_folder(tmp_path / "out", {"README.md": "new\n"})
+    assert content(tmp_path / "out") == before
+    (tmp_path / "out" / "README.md").rename(tmp_path / "mine.md")
+    write_folder(tmp_path / "out", {"README.md": "new\n"})
+    assert content(tmp_path / "out")["README.md"] == "new\n"
+
+
 def test_empty_folder_is_taken(tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     write_folder(tmp_path / "out", {"a.c": "1"})
