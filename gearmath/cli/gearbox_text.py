@@ -49,7 +49,10 @@ def _rates(job: GearboxJob, what: str) -> Iterator[str]:
     yield f"  edges  {job.edge_rate_hz:9.0f} Hz    {job.edge_rate_percent:5.1f} % of the limit"
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
     if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
-        yield f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}"
+        yield (
+            f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}: write at "
+            "most that in the machine file for it, and export anew"
+        )
 
 
 def _motor(job: GearboxJob, machine: HobbingMachine) -> Iterator[str]:
@@ -62,7 +65,8 @@ def _motion(job: GearboxJob, what: str) -> Iterator[str]:
     motion = job.motion
     yield (
         f"  run-up {motion.run_up_s:9.2f} s     of the motor: the {what} stays in phase up to "
-        f"{motion.hob_acceleration_rpm_per_s:.0f} rpm/s, {motion.shortest_run_up_s:.2f} s are followed within the lag"
+        f"{motion.hob_acceleration_rpm_per_s:.0f} rpm/s, {motion.shortest_run_up_s:.2f} s are followed within the lag; "
+        "a faster start or stop loses job and phase"
     )
     if motion.catch_up_s is not None:
         yield (

@@ -212,7 +212,11 @@ def faults(machine: HobbingMachine) -> Iterator[str]:
     yield from paragraph(
         f"A fault {f'stops the {leading} by the fail-safe output, and ' if wired else ''}stays on the display until "
         f"its cause is gone and the button is held. Where the drive is sound ({sound}) the motor follows until the "
-        f"{leading} stands, so that the work is not spoiled, and the phase is kept. After every other fault the motor "
+        f"{leading} stands, so that the work is not spoiled, and the phase is kept, **if the {leading} takes as "
+        "long to stop as the motor needs to brake**: the run-up that `gearmath gearbox plan` gives is that time, for "
+        f"starting and for stopping. A {leading} that stops faster leaves the motor "
+        "behind: `FAULT table lags` comes, and job and phase "
+        "are lost; brake it less, or choose a lower speed. After every other fault the motor "
         f"brakes at once and the phase is lost.{' Only you let the fail-safe output go on again.' * wired}"
     )
     if not wired:
