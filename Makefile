@@ -1,10 +1,12 @@
-# make demo    the whole idea on a bundled gear set, into gearmath-demo/
-# make test    every check, every test, every notebook
-# make quick   the tests that take no long time
+# make demo    runs the whole chain on a bundled gear set and writes gearmath-demo/
+# make test    runs every check, every test and every notebook
+# make quick   the fast tests only
 # make coverage  lines and branches that the tests reach, into build/coverage; 60 % slower than the tests alone
+# make lint    ruff, mypy, the layers, stripped notebooks
+# make notebooks  runs every notebook; every warning is an error
 # make docs    the site, into build/site; takes the notebooks as `make notebooks` ran them
 # make bench   speed, as ratios within one run
-# make golden  rewrites tests/golden after a wanted change of the generated C
+# make golden  rewrites tests/golden after an intended change of the generated C
 # make clean   removes what these have written, apart from .venv
 #
 # Each builds .venv by itself. Another Python: make demo PYTHON=/path/to/python3.12 - other processes: make test JOBS=4
