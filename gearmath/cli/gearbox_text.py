@@ -128,6 +128,17 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
     yield f"  {blank.hob}"
     yield f"    blank diameter {_length(blank.blank_diameter)}"
     yield f"    depth of cut   {_length(blank.cut_depth)}  ({blank.depth_rule})"
+    if blank.reaches_axis:
+        yield (
+            f"    no gear: the depth of cut, {blank.cut_depth:.4f} mm, reaches the axis of a blank of "
+            f"{blank.blank_diameter / 2:.4f} mm radius; more teeth are needed, or a profile shift (--shift)"
+        )
+        return
+    if blank.undercut is not None:
+        yield (
+            f"    undercut       below {blank.undercut.least_teeth:.1f} teeth; a profile shift of "
+            f"{blank.undercut.needed_shift:.3f} modules or more (--shift) avoids it"
+        )
     if blank.swivel is not None:
         turn = "counter-clockwise" if blank.swivel.swivel > 0 else "clockwise"
         yield (
@@ -137,9 +148,14 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
     if blank.span is not None:
         needs = f", face width over {blank.span.face_width:.2f} mm" if blank.span.face_width else ""
         yield f"    span           {_length(blank.span.length)}  over {counted(blank.span.teeth, 'tooth')}{needs}"
-    yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
+    else:
+        yield "    span           none: the jaws would not touch the flanks on both sides of two teeth or more"
+    if blank.chord is not None:
+        yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
     if blank.over_pins is not None:
         yield f"    over pins      {_length(blank.over_pins.length)}  of {blank.over_pins.pin:.4g} mm"
+    else:
+        yield "    over pins      none: such pins do not rest on the flanks and stand out above the tips; try --pin"
     yield "    " + _resolution(blank.count_um, blank.step_um, "at the pitch circle")
 
 

@@ -51,6 +51,14 @@ class OverPins:
 
 
 @dataclass(frozen=True)
+class Undercut:
+    """Teeth below which the hob undercuts the flanks (30.13), and the profile shift in modules that avoids it."""
+
+    least_teeth: float
+    needed_shift: float
+
+
+@dataclass(frozen=True)
 class Swivel:
     """Lead angle of the hob and swivel of its axis [degrees], counter-clockwise seen from hob to work."""
 
@@ -61,6 +69,25 @@ class Swivel:
 def blank_diameter(gear: Gear) -> float:
     """Outside diameter [mm]."""
     return evaluate("helical_blank", gear.teeth, gear.module, gear.beta, gear.shift)[0]
+
+
+def straight_height(
+    module: float, alpha: float, addendum: float, tip_radius: float, protuberance: float, protuberance_angle: float
+) -> float:
+    """How far above its reference cylinder the edge of a hob is straight [mm] (30.12, 30.20); lengths [mm]."""
+    tip = (addendum, tip_radius, protuberance)
+    if not protuberance:
+        return evaluate("hob_form", module, *tip, alpha)[0]
+    return evaluate("protuberance_form", *tip, alpha, protuberance_angle)[0]
+
+
+def undercut(gear: Gear, height: float) -> Undercut | None:
+    """None where a hob whose edge is straight up to ``height`` [mm] leaves the whole involute (30.13)."""
+    shape = (gear.module, gear.alpha, gear.beta)
+    none, whole, least = (evaluate("undercut_teeth", height, *shape, x)[0] for x in (0.0, 1.0, gear.shift))
+    if gear.teeth >= least:
+        return None
+    return Undercut(least, (none - gear.teeth) / (none - whole))  # it is linear in the shift
 
 
 def span(gear: Gear) -> Span | None:

@@ -14,11 +14,14 @@ from gearmath.gearbox.dimensions import (
     OverPins,
     Span,
     Swivel,
+    Undercut,
     blank_diameter,
     chord,
     over_pins,
     span,
+    straight_height,
     swivel,
+    undercut,
 )
 from gearmath.gearbox.helix import SIGNS, TRAVEL, JobRatio, Rounding, helical_ratio, hob_ratio, one_term
 from gearmath.gearbox.job import WIDEST, GearboxJob, check_range, job_values, nearest, refusal
@@ -34,6 +37,7 @@ class HobbedBlank:
     """A gear cut by one hob: outside diameter and whole depth [mm], and the dimensions that check it.
 
     Span or measurement over pins is None where none lies on the flanks, the swivel where the hob's diameter is unknown.
+    Where the depth reaches the axis of the blank there is no gear, and all three and the chord are None.
     """
 
     hob: str
@@ -42,12 +46,19 @@ class HobbedBlank:
     cut_depth: float
     swivel: Swivel | None
     span: Span | None
-    chord: Chord
+    chord: Chord | None
     over_pins: OverPins | None
     count_um: float
     """Way of the pitch circle per encoder count [um]."""
     step_um: float
     """And per motor step."""
+    undercut: Undercut | None
+    """None where the hob leaves the whole involute."""
+
+    @property
+    def reaches_axis(self) -> bool:
+        """Whether the depth takes the whole blank away."""
+        return self.cut_depth >= self.blank_diameter / 2
 
 
 @dataclass(frozen=True)
@@ -175,14 +186,21 @@ def _blank(
     pitch_diameter = teeth * hob.module_mm / math.cos(gear.beta)
     train = (float(machine.encoder_counts), float(machine.motor_steps))
     arcs = evaluate("resolution", pitch_diameter, teeth, starts, *train)
+    outside = blank_diameter(gear)
+    solid = depth < outside / 2
+    protruding = hob.protuberance * hob.module_mm
+    height = straight_height(
+        hob.module_mm, hob.alpha, hob.addendum, hob.tip_rounding, protruding, hob.alpha_protuberance
+    )
     return HobbedBlank(
         hob.name,
         hob.depth_rule,
-        blank_diameter(gear),
+        outside,
         depth,
-        stands,
-        span(gear),
-        chord(gear),
-        over_pins(gear, pin),
+        stands if solid else None,
+        span(gear) if solid else None,
+        chord(gear) if solid else None,
+        over_pins(gear, pin) if solid else None,
         *arcs,
+        undercut(gear, height),
     )

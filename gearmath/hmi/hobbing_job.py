@@ -126,13 +126,19 @@ def blank_lines(blank: HobbedBlank) -> list[PlanLine]:
         PlanLine("blank_diameter", f"{blank.blank_diameter:z.4f}", "mm"),
         PlanLine("cut_depth", f"{blank.cut_depth:z.4f}", "mm"),
     ]
+    if blank.reaches_axis:
+        found.append(PlanLine("reaches_axis", f"{blank.blank_diameter / 2:z.4f}", "mm"))
+    elif blank.undercut is not None:
+        found.append(PlanLine("undercut_below", f"{blank.undercut.least_teeth:.1f}", "1"))
+        found.append(PlanLine("needed_shift", f"{blank.undercut.needed_shift:z.3f}", "m"))
     if blank.swivel is not None:
         found.append(PlanLine("swivel", f"{blank.swivel.swivel:+z.3f}", "°"))
     if blank.span is not None:
         found.append(PlanLine("span", f"{blank.span.length:z.4f}", "mm"))
         found.append(PlanLine("span_teeth", f"{blank.span.teeth}", "1"))
-    found.append(PlanLine("chord", f"{blank.chord.thickness:z.4f}", "mm"))
-    found.append(PlanLine("chord_height", f"{blank.chord.height:z.4f}", "mm"))
+    if blank.chord is not None:
+        found.append(PlanLine("chord", f"{blank.chord.thickness:z.4f}", "mm"))
+        found.append(PlanLine("chord_height", f"{blank.chord.height:z.4f}", "mm"))
     if blank.over_pins is not None:
         found.append(PlanLine("over_pins", f"{blank.over_pins.length:z.4f}", "mm"))
         found.append(PlanLine("pin", f"{blank.over_pins.pin:.4g}", "mm"))

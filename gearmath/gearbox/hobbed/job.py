@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.gearbox.dimensions import Gear
+from gearmath.gearbox.dimensions import Gear, straight_height
 from gearmath.gearbox.kernels import evaluate, kernel
 
 TURN = 2.0 * math.pi
@@ -118,11 +118,9 @@ class HobbingJob:
     @property
     def form_height(self) -> float:
         """How far above its reference cylinder the hob's edge is straight [mm]."""
-        hob, gear = self.hob, self.gear
-        if not hob.protuberance:
-            return evaluate("hob_form", gear.module, hob.addendum, hob.tip_radius, 0.0, gear.alpha)[0]
-        tip = (hob.addendum, hob.tip_radius, hob.protuberance)
-        return evaluate("protuberance_form", *tip, gear.alpha, hob.protuberance_angle)[0]
+        hob = self.hob
+        tip = (hob.addendum, hob.tip_radius, hob.protuberance, hob.protuberance_angle)
+        return straight_height(self.gear.module, self.gear.alpha, *tip)
 
     @property
     def gash_twist(self) -> float:

@@ -96,6 +96,19 @@ def test_plan_says_when_the_firmware_would_refuse(capsys):
     assert "refuses this job while limits.hob_rpm is more than 594" in out  # 40 kHz / 4000 steps a turn, less 1 %
 
 
+def test_plan_says_where_there_is_no_gear_or_an_undercut_one_and_what_cannot_be_measured(capsys):
+    """m = 1: 2.25 mm of depth in a blank of 1.5 mm radius; 3 teeth are undercut, and no span or pins measure them."""
+    main(["gearbox", "plan", "hobbing_default.toml", "--teeth", "1", "--hob", "m1"])
+    said = capsys.readouterr().out
+    assert "no gear: the depth of cut, 2.2500 mm, reaches the axis of a blank of 1.5000 mm radius" in said
+    assert "chord" not in said
+    main(["gearbox", "plan", "hobbing_default.toml", "--teeth", "3", "--hob", "m1"])
+    said = capsys.readouterr().out
+    assert "below 17.1 teeth; a profile shift of 0.825 modules or more" in said
+    assert "span           none" in said
+    assert "over pins      none" in said
+
+
 def test_plan_of_a_thread(capsys):
     status, out, _ = gearmath(capsys, "gearbox", "plan", "lathe_example.toml", "--pitch", "11.5tpi", "--hand", "left")
     assert status == 0

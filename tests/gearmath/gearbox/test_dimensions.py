@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize
 
-from gearmath.gearbox.dimensions import Gear, blank_diameter, chord, over_pins, span, swivel
+from gearmath.gearbox.dimensions import Gear, blank_diameter, chord, over_pins, span, swivel, undercut
 
 ALPHA = math.radians(20.0)
 
@@ -35,6 +35,17 @@ def test_blanks():
     """(z + 2)/P in inches; a right-angled helix of 60 degrees doubles the reference diameter."""
     assert blank_diameter(Gear(30, 25.4 / 32, ALPHA)) == pytest.approx(25.4, rel=1e-14)
     assert blank_diameter(Gear(20, 1.5, ALPHA, math.radians(60), 0.25)) == pytest.approx(60 + 3 + 0.75, rel=1e-14)
+
+
+def test_undercut_begins_below_the_published_teeth_and_ends_at_the_published_shift():
+    """x = 1 - z sin^2(alpha)/2 of every handbook: 0.2981 for 12 teeth; 17 teeth are short of 17.097, 18 are not."""
+    small = undercut(Gear(12, 2.0, ALPHA), 2.0)
+    assert small is not None
+    assert (f"{small.least_teeth:.3f}", f"{small.needed_shift:.4f}") == ("17.097", "0.2981")
+    assert undercut(Gear(17, 2.0, ALPHA), 2.0) is not None
+    assert undercut(Gear(18, 2.0, ALPHA), 2.0) is None
+    assert undercut(Gear(12, 2.0, ALPHA, shift=0.2982), 2.0) is None
+    assert undercut(Gear(12, 2.0, ALPHA, math.radians(30)), 2.0) is None  # 11.54 teeth
 
 
 # --- a gear, point by point ---------------------------------------------------------------------------------------
