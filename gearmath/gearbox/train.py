@@ -48,12 +48,12 @@ class HobbedBlank:
     span: Span | None
     chord: Chord | None
     over_pins: OverPins | None
+    undercut: Undercut | None
+    """None where the hob leaves the whole involute."""
     count_um: float
     """Way of the pitch circle per encoder count [um]."""
     step_um: float
     """And per motor step."""
-    undercut: Undercut | None
-    """None where the hob leaves the whole involute."""
 
     @property
     def reaches_axis(self) -> bool:
@@ -201,6 +201,6 @@ def _blank(
         span(gear) if solid else None,
         chord(gear) if solid else None,
         over_pins(gear, pin) if solid else None,
-        *arcs,
         undercut(gear, height),
+        *arcs,
     )
