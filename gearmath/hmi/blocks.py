@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any, Protocol
+from collections.abc import Callable, Hashable, Iterable, Sequence
+from typing import Any
 
 from nicegui import ui
 
@@ -12,6 +11,7 @@ from gearmath.hmi import widgets
 from gearmath.hmi.desk import Kept
 from gearmath.hmi.drawing import translated
 from gearmath.hmi.messages import Text, messages
+from gearmath.hmi.number_field import NumberField
 from gearmath.hmi.state import Shared
 from gearmath.hmi.work import Progress
 
@@ -34,49 +34,7 @@ def follow(key: Callable[[], Hashable], draw: Callable[[], object]) -> None:
     ui.timer(widgets.LOOK, look)
 
 
-class _Add(Protocol):
-    def __call__(
-        self,
-        missing: Callable[[], str],
-        label: str,
-        pressed: Callable[[], object],
-        icon: str = "",
-        primary: bool = False,
-    ) -> None: ...
-
-
-@contextmanager
-def buttons() -> Iterator[_Add]:
-    """Buttons in a row, each pressed only while nothing is ``missing``; what is, stands beside them once."""
-    made: list[tuple[ui.button, Callable[[], str]]] = []
-
-    def look() -> None:
-        found = [(one, missing()) for one, missing in made]
-        for one, why in found:
-            one.enabled = not why
-        said.text = " ".join(dict.fromkeys(why for _, why in found if why))
-        said.visible = bool(said.text)
-
-    def add(
-        missing: Callable[[], str], label: str, pressed: Callable[[], object], icon: str = "", primary: bool = False
-    ) -> None:
-        def press() -> None:
-            if not missing():
-                pressed()
-            look()  # at once: the second of two quick clicks finds what the first has left
-
-        made.append((widgets.button(label, press, icon, primary), missing))
-
-    with widgets.row():
-        yield add
-        said = widgets.note("")
-        for one, _ in made:
-            one.props["aria-describedby"] = f"c{said.id}"
-    look()
-    ui.timer(widgets.LOOK, look)
-
-
-def refused(text: Text, fields: Iterable[widgets.NumberField], said: str = "blocks.refused") -> str:
+def refused(text: Text, fields: Iterable[NumberField], said: str = "blocks.refused") -> str:
     """The sentence ``said`` with the names of the fields that hold what is refused; nothing where none does."""
     names = "; ".join(one.label for one in fields if one.is_refused)
     return text(said, fields=names) if names else ""

@@ -12,7 +12,7 @@ from gearmath.front.hobbing import Job
 from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.job import ThreadPlan
-from gearmath.hmi import blocks, widgets, words
+from gearmath.hmi import acting, blocks, widgets, words
 from gearmath.hmi.catalog import files_of
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.hobbing_job import (
@@ -27,6 +27,7 @@ from gearmath.hmi.hobbing_job import (
     sketch_name,
 )
 from gearmath.hmi.messages import Text
+from gearmath.hmi.number_field import NumberField
 from gearmath.hmi.state import Shared
 from gearmath.hmi.work import Progress
 from gearmath.specs.hobbing import HobbingMachine
@@ -57,7 +58,7 @@ class _GearboxPage:
 
     def __init__(self, shared: Shared, text: Text) -> None:
         self.shared, self.text, self.desk = shared, text, shared.desk
-        self.fields: list[widgets.NumberField] = []
+        self.fields: list[NumberField] = []
         """What is to be cut, as it is typed on this page."""
 
     def outdated(self) -> str:
@@ -133,9 +134,7 @@ class _GearboxPage:
                 feed = widgets.word(text("gearbox.feed"), wish.feed, text("gearbox.feed_like")).props('suffix="mm"')
                 feed.on("change", lambda: self.wish(feed=feed.value))
         most, label = machine.limits.hob_rpm, text("gearbox.rpm")  # left out, it is what the plan proposes
-        rpm = widgets.NumberField(
-            text, label, wish.rpm, "1/min", 0.01, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True
-        )
+        rpm = NumberField(text, label, wish.rpm, "1/min", 0.01, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True)
         self.fields.append(rpm)
 
     def _number(self, key: str, value: float | None, unit: str, digits: int) -> None:
@@ -145,7 +144,7 @@ class _GearboxPage:
             self.wish(**{key: int(number) if digits == 0 else number})
 
         label = self.text(f"gearbox.{key}")
-        self.fields.append(widgets.NumberField(self.text, label, value, unit, low, high, changed, digits))
+        self.fields.append(NumberField(self.text, label, value, unit, low, high, changed, digits))
 
     def plan(self) -> None:
         """Ratio and rates against their limits, and the firmware."""
@@ -221,7 +220,7 @@ class _GearboxPage:
             widgets.note(f"{text('gearbox.whole_class')}: {'–' if whole is None else whole}")
             widgets.Message(text("gearbox.unconfirmed"), "warning")
 
-        with blocks.buttons() as button:
+        with acting.buttons() as button:
             button(lambda: self.no_plan(of_gear=True), text("gearbox.predict"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,
@@ -237,8 +236,8 @@ class _GearboxPage:
         text, desk = self.text, self.desk
         widgets.note(text("gearbox.rules"))
         with widgets.row():
-            edges = widgets.NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
-            start = widgets.NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
+            edges = NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
+            start = NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
 
         def missing() -> str:
             return self.no_plan() or blocks.refused(text, (edges, start))
@@ -257,7 +256,7 @@ class _GearboxPage:
             (name, wish), count, first = wanted
             return lambda progress: _error(name, wish, count, first, progress)
 
-        with blocks.buttons() as button:
+        with acting.buttons() as button:
             button(missing, text("gearbox.simulate"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,

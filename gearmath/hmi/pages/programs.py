@@ -11,6 +11,7 @@ from nicegui import ui
 from gearmath.errors import InputError
 from gearmath.hmi import acting, blocks, program_list, programs_work, widgets
 from gearmath.hmi.messages import Text
+from gearmath.hmi.number_field import NumberField, numbers
 from gearmath.hmi.programs_work import WrittenProgram
 from gearmath.hmi.state import Choice, Shared
 from gearmath.hmi.words import duration
@@ -56,16 +57,16 @@ def _cutting(shared: Shared, text: Text) -> None:
         name = _head(shared, text, "CUT")
         with widgets.fields():
             fields = {
-                "feed": widgets.NumberField(text, text("programs.feed"), 300.0, "mm/min", 1.0, 5000.0),
-                "spindle_rpm": widgets.NumberField(text, text("programs.rpm"), 120.0, "1/min", 1.0, 20000.0),
-                "tolerance": widgets.NumberField(text, text("programs.tolerance"), 0.1, "µm", 0.01, 100.0),
-                "roughing_stock": widgets.NumberField(text, text("programs.roughing"), 0.0, "mm", 0.0, 5.0),
-                "finishing_stock": widgets.NumberField(text, text("programs.finishing"), 0.0, "mm", 0.0, 5.0),
+                "feed": NumberField(text, text("programs.feed"), 300.0, "mm/min", 1.0, 5000.0),
+                "spindle_rpm": NumberField(text, text("programs.rpm"), 120.0, "1/min", 1.0, 20000.0),
+                "tolerance": NumberField(text, text("programs.tolerance"), 0.1, "µm", 0.01, 100.0),
+                "roughing_stock": NumberField(text, text("programs.roughing"), 0.0, "mm", 0.0, 5.0),
+                "finishing_stock": NumberField(text, text("programs.finishing"), 0.0, "mm", 0.0, 5.0),
             }
         dry = ui.checkbox(text("programs.dry_run"))
 
         def job() -> CuttingJob:
-            values = widgets.numbers(fields)
+            values = numbers(fields)
             return CuttingJob(
                 tolerance=values["tolerance"] / 1000,
                 feed=values["feed"],
@@ -83,14 +84,14 @@ def _probing(shared: Shared, text: Text) -> None:
     with widgets.panel(text("programs.probe")):
         name = _head(shared, text, "PROBE")
         with widgets.fields():
-            teeth = widgets.NumberField(text, text("programs.topography"), 1, "", 0, 1, digits=0)
-            repeat = widgets.NumberField(text, text("programs.repeat"), 1, "", 1, MOST_TOUCHES, digits=0)
+            teeth = NumberField(text, text("programs.topography"), 1, "", 0, 1, digits=0)
+            repeat = NumberField(text, text("programs.repeat"), 1, "", 1, MOST_TOUCHES, digits=0)
         acting.watch(text, lambda: teeth.limit(programs_work.teeth(shared.choice)), 4 * widgets.LOOK)
         pitch = ui.checkbox(text("programs.pitch"), value=True)
         around = ui.checkbox(text("programs.registration"), value=True)
 
         def chosen() -> ProbingChoice:
-            values = widgets.numbers({"teeth": teeth, "repeat": repeat})
+            values = numbers({"teeth": teeth, "repeat": repeat})
             return ProbingChoice(
                 tuple(range(int(values["teeth"]))), bool(pitch.value), bool(around.value), int(values["repeat"])
             )
