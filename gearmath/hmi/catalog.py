@@ -10,6 +10,7 @@ from typing import Any
 
 from gearmath.errors import InputError
 from gearmath.files import read_text
+from gearmath.specs.toml import find
 
 #: A key, with dots between tables, that a file of each kind has, and no other; one of these.
 _KEYS = {
@@ -30,6 +31,14 @@ def files_of(kind: str, folder: Path) -> dict[str, str]:
     here = {str(path): path.name for path in _toml(folder) if _is(kind, path)}
     packaged = Path(str(resources.files("gearmath") / "data"))
     return here | {path.name: f"{path.name} *" for path in _toml(packaged) if _is(kind, path)}
+
+
+def changed_at(name: str) -> int:
+    """When a file, or the bundled one of this name, was written last [ns]; 0 where it is not there."""
+    try:
+        return find(name).stat().st_mtime_ns
+    except (InputError, OSError):
+        return 0
 
 
 def _toml(folder: Path) -> list[Path]:

@@ -16,6 +16,7 @@ from gearmath.hmi.desk import Desk, Draft
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.gear_draft import GearDraft
 from gearmath.hmi.number_field import NumberField
+from gearmath.hmi.numbers import Limits
 from gearmath.hmi.work import Progress
 from gearmath.specs.bevel_set import MEMBERS
 
@@ -85,7 +86,7 @@ class GearContact:
                 for k, name in enumerate(("v", "h", "j")):
                     changed = functools.partial(typed, k)
                     fields[name] = NumberField(
-                        text, text(f"gear.{name}"), desk.assembly[k], "mm", -MOST_MM, MOST_MM, changed
+                        text, text(f"gear.{name}"), desk.assembly[k], "mm", Limits(-MOST_MM, MOST_MM), changed
                     )
 
         blocks.follow(by_others, draw)

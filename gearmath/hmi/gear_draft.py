@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 
-from gearmath.errors import InputError
 from gearmath.hmi import blocks
+from gearmath.hmi.catalog import changed_at
 from gearmath.hmi.desk import Draft, draft
 from gearmath.hmi.gear_settings import Place
 from gearmath.hmi.messages import Text
@@ -29,7 +29,7 @@ class GearDraft:
         choice, desk = self.shared.choice, self.desk
         run = desk.shown_run() if desk.source == "run" else None
         typed = tuple(desk.typed.items())
-        return choice.gear_set, _changed_at(choice.gear_set), choice.member, typed, desk.source, run
+        return choice.gear_set, changed_at(choice.gear_set), choice.member, typed, desk.source, run
 
     def compute(self) -> Callable[[Progress], Draft]:
         """The draft of the settings that are typed."""
@@ -50,11 +50,3 @@ class GearDraft:
         """That there is no run to show, where one is asked for."""
         is_there = self.desk.source != "run" or self.desk.shown_run() is not None
         return "" if is_there else self.text("blocks.no_run")
-
-
-def _changed_at(name: str) -> int:
-    """When a file was written last; 0 where it is not there."""
-    try:
-        return find(name).stat().st_mtime_ns
-    except (InputError, OSError):
-        return 0

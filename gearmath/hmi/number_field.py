@@ -8,7 +8,7 @@ from typing import Any
 from nicegui import ui
 
 from gearmath.hmi.messages import Text
-from gearmath.hmi.numbers import parsed
+from gearmath.hmi.numbers import Limits, parsed
 from gearmath.hmi.widgets import Refusal
 
 
@@ -26,13 +26,12 @@ class NumberField:
         label: str,
         value: float | None,
         unit: str,
-        low: float,
-        high: float,
+        limits: Limits,
         changed: Callable[[Any], object] = lambda value: None,
         digits: int = 6,
         optional: bool = False,
     ) -> None:
-        self._text, self._unit, self._low, self._high = text, unit, low, high
+        self._text, self._unit, self.limits = text, unit, limits
         self._changed, self._digits, self._optional = changed, digits, optional
         self.label = label
         typed = "" if value is None else self._words(value)
@@ -43,16 +42,18 @@ class NumberField:
         self.value, self._why = self._parsed(typed)
         self.field.on("change", lambda: self._leave())
 
-    def limit(self, high: float) -> None:
-        """Another upper limit, by which what stands in the field is judged anew."""
-        if high != self._high:
-            self._high = high
-            self._hint()
-            self.field.validate()
+    def limit(self, limits: Limits) -> None:
+        """Other limits, by which what stands in the field is judged anew; ``changed`` hears of what counts only now."""
+        if limits == self.limits:
+            return
+        was_refused, self.limits = self.is_refused, limits
+        self._hint()
+        self.field.validate()
+        if was_refused:
+            self._leave()
 
     def _hint(self) -> None:
-        high = f"{self._high:.10g} {self._unit}".rstrip()
-        self.field.props["hint"] = self._text("shell.range", low=f"{self._low:.10g}", high=high)
+        self.field.props["hint"] = self.limits.hint(self._text, self._unit)
 
     def show(self, value: float) -> None:
         """Another number than was typed; nothing where it stands there already."""
@@ -75,7 +76,7 @@ class NumberField:
     def _parsed(self, typed: str | None) -> tuple[float | None, str | None]:
         if self._optional and not (typed or "").strip():
             return None, None
-        return parsed(self._text, typed or "", self._low, self._high, self._unit, not self._digits)
+        return parsed(self._text, typed or "", self.limits, self._unit, not self._digits)
 
     def _refusal(self, typed: str | None) -> str | None:
         self.value, self._why = self._parsed(typed)

@@ -106,9 +106,7 @@ class _GearPage:
             for one in setting_fields(found.member):
                 label = f"{text(f'gear.{one.key}')}, {self.names[one.flanks[0] if len(one.flanks) == 1 else 'both']}"
                 shown = self.desk.typed.get(one.place, one.value)
-                fields[one.place] = NumberField(
-                    text, label, shown, one.unit, one.low, one.high, self._typed(one), DECIMALS
-                )
+                fields[one.place] = NumberField(text, label, shown, one.unit, one.limits, self._typed(one), DECIMALS)
 
     def _show(self, found: Draft, fields: dict[Place, NumberField], places: set[Place]) -> None:
         """In these fields the values that hold now."""

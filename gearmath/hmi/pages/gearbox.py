@@ -11,30 +11,34 @@ from nicegui import ui
 from gearmath.front.hobbing import Job
 from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
-from gearmath.gearbox.job import ThreadPlan
+from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.hmi import acting, blocks, widgets, words
 from gearmath.hmi.catalog import files_of
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.hobbing_job import (
-    FIELDS,
+    EDGES,
+    START,
     HobbingWish,
     PlanLine,
     blank_lines,
     firmware_zip,
+    limits,
     plan_lines,
     planned,
     predicted,
+    rpm_limits,
     sketch_name,
 )
 from gearmath.hmi.messages import Text
 from gearmath.hmi.number_field import NumberField
+from gearmath.hmi.numbers import Limits
 from gearmath.hmi.state import Shared
 from gearmath.hmi.work import Progress
 from gearmath.specs.hobbing import HobbingMachine
 from gearmath.specs.toml import find
 
-#: Edges of a simulation, and the count of the hob before it: the floating rule loses itself only after hours.
-_EDGES, _MOST_EDGES, _LATEST = 1_000_000, 20_000_000, 2_000_000_000
+#: Edges of a simulation at first.
+_EDGES = 1_000_000
 _EVERY = "-"
 
 
@@ -110,41 +114,47 @@ class _GearboxPage:
         """The fields that this machine has."""
         text, wish = self.text, self.desk.wish
         machine = load_hobber(find(self.desk.hobber))
-        hands = {hand: text(f"gear.{hand}") for hand in ("right", "left")}
+        within, hands = limits(machine), {hand: text(f"gear.{hand}") for hand in ("right", "left")}
         self.fields.clear()
         starts = wish.starts or (1 if machine.profile == "lathe" else machine.hob_starts)
         if machine.profile == "lathe":
             pitch = widgets.word(text("gearbox.pitch"), wish.pitch or "", text("gearbox.pitch_like"))
             pitch.on("change", lambda: self.wish(pitch=pitch.value))
-            self._number("starts", starts, "", 0)
+            self._number("starts", starts, "", 0, within["starts"])
             widgets.choice(text("gearbox.hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
         else:
-            self._number("teeth", wish.teeth, "", 0)
+            self._number("teeth", wish.teeth, "", 0, within["teeth"])
             every = {_EVERY: text("gearbox.every"), **{hob.name: hob.name for hob in machine.hobs}}
             chosen = wish.hob or _EVERY
             widgets.choice(
                 text("gearbox.hob"), every, chosen, lambda hob: self.wish(hob=None if hob == _EVERY else hob)
             )
-            self._number("starts", starts, "", 0)
-            self._number("helix", wish.helix, "°", 4)
+            self._number("starts", starts, "", 0, within["starts"])
+            self._number("helix", wish.helix, "°", 4, within["helix"])
             widgets.choice(text("gearbox.helix_hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
             cuts = {cut: text(f"gearbox.{cut}") for cut in ("climb", "conventional")}
             widgets.choice(text("gearbox.cut"), cuts, wish.cut, lambda cut: self.wish(cut=cut))
             if machine.feed is None:
                 feed = widgets.word(text("gearbox.feed"), wish.feed, text("gearbox.feed_like")).props('suffix="mm"')
                 feed.on("change", lambda: self.wish(feed=feed.value))
-        most, label = machine.limits.hob_rpm, text("gearbox.rpm")  # left out, it is what the plan proposes
-        rpm = NumberField(text, label, wish.rpm, "1/min", 0.01, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True)
+        label = text("gearbox.rpm")  # left out, it is what the plan proposes
+        rpm = NumberField(
+            text, label, wish.rpm, "1/min", within["rpm"], lambda rpm: self.wish(rpm=rpm), 2, optional=True
+        )
         self.fields.append(rpm)
+        blocks.follow(self._job, lambda: rpm.limit(within["rpm"] if (job := self._job()) is None else rpm_limits(job)))
 
-    def _number(self, key: str, value: float | None, unit: str, digits: int) -> None:
-        low, high = FIELDS[key]
+    def _job(self) -> GearboxJob | None:
+        """The plan of the job that stands in the fields, where there is one."""
+        found = self.desk.of("gearbox")
+        return found.work.result[1].plan if found.has(self.key()) else None
 
+    def _number(self, key: str, value: float | None, unit: str, digits: int, within: Limits) -> None:
         def changed(number: float) -> None:
             self.wish(**{key: int(number) if digits == 0 else number})
 
         label = self.text(f"gearbox.{key}")
-        self.fields.append(NumberField(self.text, label, value, unit, low, high, changed, digits))
+        self.fields.append(NumberField(self.text, label, value, unit, within, changed, digits))
 
     def plan(self) -> None:
         """Ratio and rates against their limits, and the firmware."""
@@ -236,8 +246,8 @@ class _GearboxPage:
         text, desk = self.text, self.desk
         widgets.note(text("gearbox.rules"))
         with widgets.row():
-            edges = NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
-            start = NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
+            edges = NumberField(text, text("gearbox.edges"), _EDGES, "", EDGES, digits=0)
+            start = NumberField(text, text("gearbox.start"), 0, "", START, digits=0)
 
         def missing() -> str:
             return self.no_plan() or blocks.refused(text, (edges, start))
