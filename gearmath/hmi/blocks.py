@@ -57,13 +57,14 @@ def kept(
 ) -> None:
     """What is computed for a key, as soon as it is there; the progress until then, or why there is nothing.
 
-    ``compute`` gives the computation for the key of now; a key of None has none, and ``empty`` is said. While
-    ``outdated`` says that something else is typed than what was computed, that is said and nothing is shown.
+    ``name`` says what is computed; ``compute`` gives the computation for the key of now; a key of None has none, and
+    ``empty`` is said. While ``outdated`` says that something else is typed than what was computed, that is said and
+    nothing is shown.
     """
 
     def state() -> tuple[Hashable, bool, int, str]:
         now = key()
-        return now, now is not None and found.look(now, name, compute()), found.work.count, outdated()
+        return now, now is not None and found.look(now, compute()), found.work.count, outdated()
 
     def show() -> None:
         now, ended, _, why = state()
@@ -73,7 +74,7 @@ def kept(
             if empty:
                 widgets.note(empty)
         elif not ended:
-            widgets.progress(text, found.work)
+            widgets.progress(text, found.work, lambda: name)
         elif found.work.error:
             widgets.Message(text.quoted(found.work.error), "error")
         elif found.work.result is None:

@@ -28,11 +28,11 @@ class Kept:
     work: Work = field(default_factory=Work)
     key: Hashable = None
 
-    def look(self, key: Hashable, name: str, compute: Callable[[Progress], Any]) -> bool:
+    def look(self, key: Hashable, compute: Callable[[Progress], Any]) -> bool:
         """Whether the computation for ``key`` has ended; begins it where it has not begun."""
         if not self.work.running and self.key != key:
             self.key = key
-            self.work.start(name, compute)
+            self.work.start("", compute)
         return self.key == key and not self.work.running
 
     def has(self, key: Hashable) -> bool:

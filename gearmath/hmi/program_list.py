@@ -125,7 +125,7 @@ def _milled(text: Text, shared: Shared, chosen: Callable[[], str]) -> None:
         else:
             said.show(text("shell.outdated", words=words))
 
-    widgets.progress(text, work, ended, lambda: text("programs.milling", name=work.name), is_current)
+    widgets.progress(text, work, lambda: text("programs.milling", name=work.name), ended, is_current)
 
 
 def _send(shared: Shared, name: str, replace: bool) -> None:
@@ -172,4 +172,4 @@ def _sent(text: Text, shared: Shared) -> None:
     def what() -> str:
         return text("programs.sending", name=work.name, control=control_name(text, shared))
 
-    widgets.progress(text, work, ended, what, is_current)
+    widgets.progress(text, work, what, ended, is_current)

@@ -167,14 +167,14 @@ def table(columns: Sequence[tuple[str, str]], rows: Sequence[dict[str, Any]], ke
 def progress(
     text: Text,
     work: Work,
+    what: Callable[[], str],
     ended: Callable[[], object] = lambda: None,
-    what: Callable[[], str] | None = None,
     is_current: Callable[[], bool] = lambda: True,
 ) -> None:
     """The bar of a long computation, while it runs; ``ended`` is called when one has, and when the page is opened.
 
-    ``what`` says in the language of the page what runs, its name by default. Where the outcome is not ``is_current``,
-    the reason of a failure goes, and ``ended`` is called anew: the fields have changed since.
+    ``what`` says in the language of the page what runs: who has begun it may read another one. Where the outcome is
+    not ``is_current``, the reason of a failure goes, and ``ended`` is called anew: the fields have changed since.
     """
     with ui.element("div").classes("gm-progress") as box:
         words = ui.label()
@@ -188,7 +188,7 @@ def progress(
         box.visible = work.running
         if work.running:
             failed.show("")
-            said = text("shell.running", what=what() if what else work.name, seconds=f"{work.seconds:.0f}")
+            said = text("shell.running", what=what(), seconds=f"{work.seconds:.0f}")
             if work.remaining is not None:
                 said += f", {text('shell.remaining', seconds=f'{work.remaining:.0f}')}"
             words.text = said

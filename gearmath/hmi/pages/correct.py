@@ -192,7 +192,7 @@ class _CorrectPage:
             found = proposal()
             assert found is not None  # else something is missing
             desk.wanted["correct.accept"] = self.key()
-            work.start(text("correct.writing"), lambda progress: accept(desk.runs, found, self.shared.folder))
+            work.start(f"run {found.evaluated.run.id}", lambda progress: accept(desk.runs, found, self.shared.folder))
 
         def rejected() -> None:
             found = proposal()
@@ -223,7 +223,7 @@ class _CorrectPage:
                 else:
                     done.show("")
 
-            widgets.progress(text, work, ended)
+            widgets.progress(text, work, lambda: text("correct.writing"), ended)
 
         blocks.follow(lambda: desk.wanted.get("correct.accept") == self.key(), outcome)
         blocks.follow(lambda: (desk.shown_run(), desk.decisions), self._decided)

@@ -170,7 +170,7 @@ def _writing(
     def look() -> None:
         button.enabled = not work.running
 
-    widgets.progress(text, work, ended, lambda: text("programs.writing", name=work.name), is_current)
+    widgets.progress(text, work, lambda: text("programs.writing", name=work.name), ended, is_current)
     acting.watch(text, look)
 
 

@@ -25,11 +25,11 @@ class Built:
     looks: list[Any] = field(default_factory=list)
     made: list[NumberField] = field(default_factory=list)
 
-    def look(self) -> None:
-        """As after a while: all computations have ended, and every part has seen it."""
-        for _ in range(4):
+    def look(self, wait: bool = True) -> None:
+        """As after a while: all computations have ended, and every part has seen it. Without ``wait``: at once."""
+        for _ in range(4 if wait else 1):
             for kept in [*self.shared.desk.kept.values()]:
-                kept.work.wait(60)
+                kept.work.wait(60 if wait else 0)
             with self.client:
                 for one in [one for one in self.looks if not one.is_deleted]:
                     one.callback()
@@ -55,7 +55,7 @@ def _is_shown(one: Any) -> bool:
 
 @pytest.fixture
 def build(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Built]]:
-    """``build(shared, name, language="en")``: a page by its name."""
+    """``build(shared, name, language="en", wait=True)``: a page by its name."""
     now: list[Built] = []
 
     class Timer(ui.element):
@@ -74,11 +74,11 @@ def build(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., Built]]:
     monkeypatch.setattr(ui, "timer", Timer)
     monkeypatch.setattr(NumberField, "__init__", init)
 
-    def start(shared: Shared, name: str, language: str = "en") -> Built:
+    def start(shared: Shared, name: str, language: str = "en", wait: bool = True) -> Built:
         now.append(Built(shared, Client(page(f"/{name}"))))
         with now[-1].client:
             importlib.import_module(f"gearmath.hmi.pages.{name}").build(shared, Text(language))
-        now[-1].look()
+        now[-1].look(wait)
         return now[-1]
 
     yield start
