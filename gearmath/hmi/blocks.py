@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 from nicegui import ui
 
+from gearmath.errors import ComputationError, InputError
 from gearmath.hmi import widgets
 from gearmath.hmi.desk import Kept
 from gearmath.hmi.drawing import translated
@@ -17,21 +19,32 @@ from gearmath.hmi.work import Progress
 
 
 def follow(key: Callable[[], Hashable], draw: Callable[[], object]) -> None:
-    """Draw now, and anew whenever the key is another, whoever changed it."""
+    """Draw now, and anew whenever the key is another, whoever changed it; or say why that cannot be."""
     place = ui.element("div").classes("gm-follow")
     seen: list[Hashable] = []
 
     def look() -> None:
-        now = key()
+        made = draw
+        try:
+            now = key()
+        except (InputError, ComputationError) as error:
+            now, made = str(error), partial(_refused, error)
         if seen and seen[0] == now:
             return
         seen[:] = [now]
         place.clear()
         with place:
-            draw()
+            try:
+                made()
+            except (InputError, ComputationError) as error:
+                _refused(error)
 
     look()
     ui.timer(widgets.LOOK, look)
+
+
+def _refused(error: Exception) -> None:
+    widgets.Message(widgets.words_of(error), "error")
 
 
 def refused(text: Text, fields: Iterable[NumberField], said: str = "blocks.refused") -> str:

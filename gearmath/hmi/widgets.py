@@ -98,16 +98,34 @@ def word(label: str, value: str, hint: str) -> ui.input:
 
 
 def choice(label: str, options: Sequence[str] | dict[Any, str], value: Any, changed: Callable[[Any], object]) -> Any:
-    """One of several, by keyboard or touch."""
+    """One of several, by keyboard or touch. What ``changed`` refuses is not chosen: the one before stays."""
     given = list(options) if not isinstance(options, dict) else options
-    found = ui.select(given, label=label, value=value, on_change=lambda event: changed(event.value))
+    held = [value]
+
+    def change(chosen: Any) -> None:
+        if chosen == held[0]:
+            return
+        try:
+            changed(chosen)
+        except (InputError, ComputationError) as error:
+            say_error(error)
+            found.value = held[0]
+        else:
+            held[0] = chosen
+
+    found = ui.select(given, label=label, value=value, on_change=lambda event: change(event.value))
     return found.classes("gm-choice").props("outlined dense options-dense")
 
 
-def say_error(error: Exception) -> None:
+def words_of(error: Exception) -> str:
     """Why something failed, framed where it is in another language than the page."""
     is_foreign = ui.context.client.page.language == "de" and not isinstance(error, Refusal)
-    say(Text("de").quoted(error) if is_foreign else str(error), "error")
+    return Text("de").quoted(error) if is_foreign else str(error)
+
+
+def say_error(error: Exception) -> None:
+    """Say over the page why something failed."""
+    say(words_of(error), "error")
 
 
 def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool = False) -> ui.button:

@@ -8,7 +8,7 @@ from pathlib import Path
 from nicegui import ui
 
 from gearmath.hmi import acting, blocks, widgets
-from gearmath.hmi.catalog import files_of
+from gearmath.hmi.catalog import check, files_of
 from gearmath.hmi.correcting import free_file
 from gearmath.hmi.desk import Draft
 from gearmath.hmi.gear_contact import GearContact
@@ -164,6 +164,9 @@ class _GearPage:
 
     def _choose(self, **changes: str) -> None:
         if any(getattr(self.shared.choice, key) != value for key, value in changes.items()):
+            for kind in ("gear_set", "machine", "calibration"):
+                if kind in changes:
+                    check(kind, changes[kind])
             if {"gear_set", "member"} & changes.keys():
                 self.desk.typed = {}
             self.shared.choose(**changes)

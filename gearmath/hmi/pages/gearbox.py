@@ -13,7 +13,7 @@ from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.hmi import acting, blocks, widgets, words
-from gearmath.hmi.catalog import files_of
+from gearmath.hmi.catalog import changed_at, check, files_of
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.hobbing_job import (
     EDGES,
@@ -79,8 +79,8 @@ class _GearboxPage:
         return "" if work.result is not None else self.text("gearbox.no_plan")
 
     def key(self) -> Any:
-        """What is planned."""
-        return self.desk.hobber, self.desk.wish
+        """What is planned: machine, the file as it is, and the wish."""
+        return self.desk.hobber, changed_at(self.desk.hobber), self.desk.wish
 
     def compute(self) -> Callable[[Progress], tuple[HobbingMachine, Job]]:
         """The plan of now."""
@@ -102,20 +102,21 @@ class _GearboxPage:
 
         def choose(name: str) -> None:
             if name != desk.hobber:
+                check("hobber", name)
                 self.desk.wish = HobbingWish(teeth=desk.wish.teeth or 17, pitch=desk.wish.pitch or "1.25mm")
                 desk.hobber = name
 
         options = files_of("hobber", self.shared.folder)
         options = options if desk.hobber in options else {desk.hobber: desk.hobber, **options}
         widgets.choice(text("gearbox.file"), options, desk.hobber, choose)
-        blocks.follow(lambda: desk.hobber, self._wish)
+        blocks.follow(lambda: (desk.hobber, changed_at(desk.hobber)), self._wish)
 
     def _wish(self) -> None:
         """The fields that this machine has."""
         text, wish = self.text, self.desk.wish
+        self.fields.clear()
         machine = load_hobber(find(self.desk.hobber))
         within, hands = limits(machine), {hand: text(f"gear.{hand}") for hand in ("right", "left")}
-        self.fields.clear()
         starts = wish.starts or (1 if machine.profile == "lathe" else machine.hob_starts)
         if machine.profile == "lathe":
             pitch = widgets.word(text("gearbox.pitch"), wish.pitch or "", text("gearbox.pitch_like"))
@@ -211,7 +212,7 @@ class _GearboxPage:
             desk.wanted["quality"] = self.key()
 
         def compute() -> Callable[[Progress], Any]:
-            name, wish = self.key()
+            name, _, wish = self.key()
             return lambda progress: predicted(load_hobber(find(name)), wish, progress)
 
         def show(found: tuple[tuple[FigureClass, ...], int | None]) -> None:
@@ -263,7 +264,7 @@ class _GearboxPage:
 
         def compute() -> Callable[[Progress], str]:
             wanted: Any = desk.wanted["gearbox"]
-            (name, wish), count, first = wanted
+            (name, _, wish), count, first = wanted
             return lambda progress: _error(name, wish, count, first, progress)
 
         with acting.buttons() as button:

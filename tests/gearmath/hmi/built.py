@@ -39,6 +39,22 @@ class Built:
         """Those that are on the page now."""
         return {one.label: one for one in self.made if not one.field.is_deleted}
 
+    def select(self, label: str) -> Any:
+        """A list to choose from, by its label."""
+        (found,) = [
+            one for one in self.client.elements.values() if isinstance(one, ui.select) and one.props["label"] == label
+        ]
+        return found
+
+    def over(self) -> list[str]:
+        """What is said over the page."""
+        return [one.message for one in self.client.elements.values() if isinstance(one, ui.notification)]
+
+    def dismiss(self) -> None:
+        """As when somebody has read it."""
+        for one in [one for one in self.client.elements.values() if isinstance(one, ui.notification)]:
+            one.delete()
+
     def says(self) -> list[str]:
         """All words that are shown."""
         found = (one for one in self.client.elements.values() if isinstance(one, ui.label))
