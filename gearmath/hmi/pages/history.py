@@ -9,7 +9,7 @@ from nicegui import ui
 
 from gearmath.control.store_compare import Comparison
 from gearmath.control.store_picture import runs_figure, trend_figure
-from gearmath.hmi import blocks, widgets
+from gearmath.hmi import acting, blocks, widgets
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.messages import Text
@@ -141,7 +141,7 @@ def _trend(shared: Shared, text: Text) -> None:
         run: Any = desk.shown_run()
         return lambda progress: _drawn_trend(desk.runs, run, progress)
 
-    with blocks.buttons() as button:
+    with acting.buttons() as button:
         button(missing, text("history.show_trend"), begin, "show_chart", primary=True)
     blocks.kept(
         text,

@@ -89,7 +89,7 @@ def _sheet(shared: Shared, text: Text, run: int) -> None:
     work, asked = shared.works["result.sheet"], [""]
 
     def ask(what: str) -> None:
-        work.start(text("result.sheet"), lambda progress: shared.desk.runs.sheet(run, progress))
+        work.start(f"run {run}", lambda progress: shared.desk.runs.sheet(run, progress))
         asked[0] = what
 
     def ended() -> None:
@@ -106,7 +106,7 @@ def _sheet(shared: Shared, text: Text, run: int) -> None:
     with widgets.row():
         widgets.button(text("result.print"), lambda: ask("print"), "print", primary=True)
         widgets.button(text("result.save"), lambda: ask("save"), "download")
-    widgets.progress(text, work, ended)
+    widgets.progress(text, work, lambda: text("result.sheet"), ended)
     frame = ui.element("iframe").classes("gm-sheet")
     frame.props["title"], frame.props["tabindex"] = text("result.sheet"), "-1"
 
