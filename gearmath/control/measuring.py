@@ -24,7 +24,7 @@ from gearmath.control.interface import (
     RunStart,
     Status,
 )
-from gearmath.control.parts import last_in_a_row
+from gearmath.control.parts import base_of, last_in_a_row
 from gearmath.errors import ComputationError, InputError, counted
 
 Connect = Callable[[], Awaitable[Control]]
@@ -78,6 +78,8 @@ class Measuring:
         self._odd: Handshake | None = None
         self._last = 0
         """The last point of the stretch that the program makes now."""
+        self._base = 0
+        """R101 of the start that this host has prepared, until its first touch: no point that is offered."""
         self.reconnected = 0
         self.is_ready = False
         """Whether the program may be started, or goes on already."""
@@ -114,6 +116,7 @@ class Measuring:
     async def _stretch(self, parts: tuple[int, int]) -> None:
         """One start of the program."""
         follows, self._number, self._baseline, self.is_ready = self.is_ready, None, None, False
+        self._base = 0
         self._last = last_in_a_row(self._run.start.points, self._missing)
         control, ready = await self._again(self._patience.first), False
         try:
@@ -159,6 +162,8 @@ class Measuring:
         handshake = await control.handshake()
         if status.channel is ChannelState.RESET:
             self._baseline = handshake.number
+            text = start.program_text.decode("utf-8", "replace")
+            self._base = base_of(start.points, text, self._missing) if parts[0] > 1 and self._missing else 0
             await control.prepare(*parts)
             touches = sum(point <= self._last for point in self._missing)
             more = len(self._missing) - touches
@@ -222,7 +227,7 @@ class Measuring:
         point = handshake.offered
         if not self._is_open and handshake.acknowledged == point == self._last:
             return True
-        if point == handshake.acknowledged or point == 0:
+        if not self._offers(handshake):
             return not self._is_open and point == self._last
         if not handshake.waits:
             raise _Stopped(f"{control.name}: the program does not wait for a host: R104 must be 1 before it is started")
@@ -251,6 +256,12 @@ class Measuring:
         await control.acknowledge(point)
         return not self._is_open and point == self._last
 
+    def _offers(self, handshake: Handshake) -> bool:
+        """Whether the program offers a point that is not acknowledged."""
+        point = handshake.offered
+        on_its_way = point == 0 or (point == self._base and handshake.acknowledged == 0)
+        return point != handshake.acknowledged and not on_its_way
+
     async def _look_around(self, control: Control) -> bool:
         """Alarms, and whether the program still runs; True when it has ended and nothing is missing."""
         status = await control.status()
@@ -261,7 +272,7 @@ class Measuring:
             handshake = await control.handshake()
             await asyncio.sleep(self._patience.news)
             await self._hear(control)
-            if handshake.number == self._number and handshake.offered == handshake.acknowledged:
+            if handshake.number == self._number and not self._offers(handshake):
                 raise _Stopped(f"{control.name}: the program ended before point {self._missing[0]}{self._because()}")
             if handshake.number == self._number:
                 raise _Stopped(f"{control.name}: the control was reset at point {handshake.offered}{self._because()}")

@@ -41,6 +41,15 @@ def last_in_a_row(points: Collection[int], missing: Sequence[int]) -> int:
     return last
 
 
+def base_of(points: Mapping[int, tuple[str, ...]], text: str, missing: Sequence[int]) -> int:
+    """What R101 is in a start that makes the first of the ``missing`` points, until its first touch is offered: the
+    point before the part of that touch. ``points`` are those of the run."""
+    part, base = part_of(points, text), missing[0] - 1
+    while part.get(base) == part[missing[0]]:
+        base -= 1
+    return base
+
+
 def chosen_points(option: str, text: str, there: Collection[int]) -> list[int]:
     """The numbers in a text such as 3,17-20, each a point that is ``there``; an InputError names ``option``."""
     found: set[int] = set()

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from gearmath.control.interface import RunStart, Touch
+from gearmath.control.parts import base_of
 from gearmath.control.run_start import begun, files_of
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_touches import touch_csv
@@ -56,6 +57,15 @@ def test_points_of_a_calibration_are_made_by_the_sections_that_hold_them(command
     start, parts = begun("control", program, None, "vertical_5axis.toml", "probe.toml", points="12-17")
     assert parts == [(2, 2)]
     assert list(start.points) == list(range(10, 19))
+    text = start.program_text.decode()
+    assert [base_of(start.points, text, list(range(k, 19))) for k in (10, 12, 18)] == [9, 9, 9]
+
+
+@pytest.mark.parametrize(("first", "base"), [(1, 0), (2, 0), (4, 3), (6, 3), (10, 9), (11, 9)])
+def test_a_start_in_mid_part_begins_with_its_first_touch(first: int, base: int) -> None:
+    """Three touches a point; those of the third point are not of the run."""
+    points = {k: (f"{(k - 1) // 3}",) for k in range(1, 13) if k not in (7, 8, 9)}
+    assert base_of(points, "", [k for k in points if k >= first]) == base
 
 
 def test_a_run_that_touches_points_again_takes_the_files_of_the_first_unless_others_are_given(tmp_path: Path) -> None:

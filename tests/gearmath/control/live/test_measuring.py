@@ -18,7 +18,7 @@ import pytest
 from asyncua import ua
 
 from gearmath.control import sinumerik
-from gearmath.control.interface import RunStart
+from gearmath.control.interface import RunStart, Touch
 from gearmath.control.measuring import Measuring, Patience
 from gearmath.control.run_start import begun, resumed
 from gearmath.control.simulated.nc import NcAlarm
@@ -177,6 +177,39 @@ def test_scattered_points_are_touched_by_one_start_for_each_stretch(
         point: tuple(touch)[1:] for point, touch in run.touches().items()
     }
     assert [one.number - offered[2].number for one in offered.values()] == [0, 1, 1, 2]
+
+
+@pytest.mark.parametrize("points", ["1", "10", "3,9-10", "1,4", "7-9"])
+def test_a_program_on_its_way_to_its_first_touch_offers_nothing(
+    live: Any, ten: RunStart, store: MeasurementStore, tmp_path: Path, points: str
+) -> None:
+    """R101 is the point before the part then, for as long as the machine moves there: a run that began looks at it."""
+    text = live.TEN.replace('T="PROBE"', "G4 F0.5\n" * 6 + 'T="PROBE"')
+    (tmp_path / live.NAME).write_text(text, "utf-8")
+    files = "vertical_5axis.toml", "probe.toml"
+    start, stretches = begun("control", tmp_path / live.NAME, "nasa_tp3096_12x36.toml", *files, points=points)
+    live.load(text)
+    begin, run = len(live.nc.log), store.begin_run(replace(start, refers_to=store.begin_run(ten).id))
+    asyncio.run(_measure(live, run, stretches=stretches))
+    assert run.is_complete
+    assert [one.point for one in live.since(begin, "acknowledged")] == list(run.start.points)
+    assert list(run.touches()) == list(start.points)
+
+
+@pytest.mark.parametrize("missing", [1, 2, 10])
+def test_a_resumed_run_acknowledges_no_point_that_was_not_offered(
+    live: Any, ten: RunStart, store: MeasurementStore, missing: int
+) -> None:
+    """The point before the first one that is missing is kept, and R101 shows it until that one is touched."""
+    text = live.TEN.replace('T="PROBE"', "G4 F0.5\n" * 6 + 'T="PROBE"')
+    live.load(text)
+    run = store.begin_run(replace(ten, program_text=text.encode()))
+    for point in range(1, missing):
+        run.commit_touch(point, Touch(1, float(point), 0.0, 0.0, 0.0, 0.0, 1.0))
+    begin = len(live.nc.log)
+    again = _resume(live, store, run)
+    assert again.is_complete
+    assert [one.point for one in live.since(begin, "acknowledged")] == list(range(missing, 11))
 
 
 @pytest.mark.parametrize("points", ["11", "0", "6-5", "1,,2", "3;4", "1-11", ""])
