@@ -80,6 +80,8 @@ class Measuring:
         """The last point of the stretch that the program makes now."""
         self._base = 0
         """R101 of the start that this host has prepared, until its first touch: no point that is offered."""
+        self.interruption = "interrupted by the operator of the host"
+        """Why it ends where this task is cancelled."""
         self.reconnected = 0
         self.is_ready = False
         """Whether the program may be started, or goes on already."""
@@ -99,7 +101,7 @@ class Measuring:
             for parts in stretches or ((0, 0),):
                 await self._stretch(parts)
         except asyncio.CancelledError:
-            self._run.finish("interrupted by the operator of the host")
+            self._run.finish(self.interruption)
             raise
         except InputError as error:
             self._run.finish(str(error))

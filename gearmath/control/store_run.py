@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from gearmath.control.store import MeasurementStore
 
 COMPLETE = "complete"
+#: What the outcome of a run begins with that nobody will go on with; a note says why.
+CLOSED = "closed: "
+#: Characters of a note at most.
+NOTE = 500
 
 
 class StoredRun:
@@ -97,6 +101,15 @@ class StoredRun:
                 "INSERT INTO ending VALUES (?, ?, ?, ?)", self.id, self.next_number("ending"), now(), outcome
             )
 
+    def close(self, note: str) -> None:
+        """Keep that nobody will go on with the run, and why. What was touched stays.
+
+        Raises InputError for a note that is missing or too long, and for a run that is complete.
+        """
+        if self.is_complete:
+            raise InputError(f"{self.store.path}: run {self.id} is complete: there is nothing to close")
+        self.finish(f"{CLOSED}{noted(note)}")
+
     def sessions(self) -> list[dict[str, str]]:
         """Who began the run and who went on with it, and when."""
         rows = self._rows("SELECT at, operator, host, gearmath FROM session WHERE run = ? ORDER BY number")
@@ -137,6 +150,16 @@ class StoredRun:
 
     def _name(self, point: int) -> str:
         return f"{self.store.path}: run {self.id}, point {point}"
+
+
+def noted(note: str) -> str:
+    """A note as it is kept. Raises InputError for one that is missing or too long."""
+    plain = note.strip()
+    if not plain:
+        raise InputError("note: is missing: say why")
+    if len(plain) > NOTE:
+        raise InputError(f"note: has {len(plain)} characters, must have at most {NOTE}")
+    return plain
 
 
 def now() -> str:

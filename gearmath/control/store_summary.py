@@ -7,7 +7,7 @@ from typing import Any
 
 from gearmath.control.parts import stretches_of
 from gearmath.control.store import MeasurementStore
-from gearmath.control.store_run import COMPLETE, StoredRun
+from gearmath.control.store_run import CLOSED, COMPLETE, StoredRun
 from gearmath.control.store_touches import first_of
 
 #: What a run is called that has ended in no way: it is measured now, or its computer was switched off.
@@ -28,7 +28,7 @@ _SUMMARY = """
 
 @dataclass(frozen=True)
 class RunSummary:
-    """How one run stands. Times are UTC; ``state`` is complete, open, or why the run ended before."""
+    """How one run stands. Times are UTC; ``state`` is complete, open, closed with a note, or why it ended before."""
 
     run: int
     begun: str
@@ -48,6 +48,11 @@ class RunSummary:
     @property
     def is_complete(self) -> bool:
         return self.state == COMPLETE
+
+    @property
+    def closed(self) -> str:
+        """The note with which it was closed; empty where it was not."""
+        return self.state.removeprefix(CLOSED) if self.state.startswith(CLOSED) else ""
 
 
 def summaries(store: MeasurementStore) -> list[RunSummary]:

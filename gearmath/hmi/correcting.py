@@ -15,7 +15,7 @@ from typing import Any
 from gearmath.bevel.pair import check_corrected, load_pair
 from gearmath.control.run_start import MACHINE, SET
 from gearmath.control.store_evaluation import EvaluatedRun
-from gearmath.control.store_run import now
+from gearmath.control.store_run import noted, now
 from gearmath.errors import ComputationError, InputError
 from gearmath.files import write_text
 from gearmath.front.machines import Machine
@@ -38,8 +38,6 @@ from gearmath.specs.set_text import save_corrected
 WHICH = ("few", "standard", "all")
 #: How the store calls what the operator decided.
 DECISION = "decision.json"
-#: Characters of a note at most.
-NOTE = 500
 _ONE_AT_A_TIME = threading.Lock()
 
 
@@ -149,10 +147,11 @@ def accept(runs: JudgedRuns, proposal: Proposal, folder: Path) -> Accepted:
 
 
 def reject(runs: JudgedRuns, proposal: Proposal, note: str) -> None:
-    """Keep with the run that its correction was not wanted, and why. Raises InputError for a note that is too long."""
-    if len(note) > NOTE:
-        raise InputError(f"note: has {len(note)} characters, must have at most {NOTE}")
-    _decide(runs, proposal.evaluated.run.id, "rejected", {}, note)
+    """Keep with the run that its correction was not wanted, and why.
+
+    Raises InputError for a note that is missing or too long.
+    """
+    _decide(runs, proposal.evaluated.run.id, "rejected", {}, noted(note))
 
 
 def free_file(folder: Path, stem: str, suffix: str) -> Path:

@@ -16,10 +16,11 @@ from dataclasses import dataclass
 from typing import Any, TypeVar
 
 from gearmath.control.delivery import deliver
-from gearmath.control.interface import Control, Status
+from gearmath.control.interface import ChannelState, Control, Status
 from gearmath.control.measuring import Connect, Patience, connected
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.alarm_book import AlarmBook
+from gearmath.hmi.probe_check import ProbeCheck
 
 #: Times [s]: between two looks at the state, between two looks at alarms and probe, and between attempts to connect.
 LOOK, NEWS = 0.2, 0.5
@@ -62,6 +63,8 @@ class ControlLink:
     def __init__(self, name: str, connect: Connect, book: AlarmBook) -> None:
         self.name, self.connect, self.book = name, connect, book
         self.view = View()
+        self.check = ProbeCheck()
+        """Whether the probe was seen to work, while no program ran."""
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, name="control", daemon=True)
         self._watch: Future[None] | None = None
@@ -72,7 +75,9 @@ class ControlLink:
         self._watch = self.submit(self._watching())
 
     def close(self) -> None:
-        """Give the session back."""
+        """Give the session back; a second time there is none."""
+        if not self._thread.is_alive():
+            return
         if self._watch is not None:
             self._watch.cancel()
         with suppress(Exception):
@@ -103,6 +108,7 @@ class ControlLink:
             except (ComputationError, InputError, OSError) as error:
                 last = self.view
                 self.view = View(last.at, last.status, last.probe, False, str(error))
+                self.check.look(None)
             finally:
                 if control is not None:
                     await _leave(control)
@@ -118,6 +124,8 @@ class ControlLink:
                 self.book.hear(await control.alarms())
             probe = await control.probe_deflected()
             self.view = View(time.monotonic(), status, probe, True)
+            if status.channel is ChannelState.RESET:  # what touches else is no hand
+                self.check.look(probe)
             await asyncio.sleep(LOOK)
 
     async def _rest(self) -> None:

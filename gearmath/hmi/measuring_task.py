@@ -5,20 +5,23 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import deque
-from collections.abc import Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from concurrent.futures import Future
 from enum import StrEnum
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from gearmath.control.interface import Touch
+from gearmath.control.interface import RunStart, Touch
 from gearmath.control.measuring import Measuring, check_ready
-from gearmath.control.run_start import begun, resumed
+from gearmath.control.run_start import begun, files_of, resumed
 from gearmath.control.store import MeasurementStore
 from gearmath.control.store_run import StoredRun
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.link import PATIENCE, ControlLink
 from gearmath.hmi.state import Choice
+
+_Planned = tuple[RunStart, list[tuple[int, int]]]
 
 
 class RunState(StrEnum):
@@ -43,6 +46,7 @@ class MeasuringTask:
         self._measuring: Measuring | None = None
         self._future: Future[None] | None = None
         self._times: deque[tuple[float, int]] = deque(maxlen=50)
+        self._clock = _Clock()
         self._hold = False
         self._end = RunState.NONE
         self.was_lost = False
@@ -59,9 +63,14 @@ class MeasuringTask:
 
     # what pages ask for
 
-    def start(self, program: Path, choice: Choice, points: str | None = None, again_of: int | None = None) -> None:
+    def start(self, program: Path, choice: Choice) -> None:
         """A new run of a program that lies on the control. Raises InputError where one goes on."""
-        self._begin(self._new(program, choice, points, again_of))
+        files = choice.gear_set, choice.machine, choice.calibration
+        self._begin(self._new(lambda: begun(self._link.name, program, *files)))
+
+    def start_again(self, run: int, points: str) -> None:
+        """A new run of chosen points of a stored run, by its program and files. Raises InputError where one goes on."""
+        self._begin(self._new(lambda: _again(self._store, self._link.name, run, points)))
 
     def resume(self, run: int) -> None:
         """Go on with a run of the store. Raises InputError where one goes on."""
@@ -75,9 +84,15 @@ class MeasuringTask:
         """Acknowledge again."""
         self._hold = self.was_lost = False
         self.held_at = None
+        self._clock.go_on()
 
-    def stop(self) -> None:
-        """End the run here; what is kept stays, and it may be resumed. Never moves anything."""
+    def stop(self, why: str = "") -> None:
+        """End the run here; what is kept stays, and it may be resumed. Never moves anything.
+
+        ``why`` is what the store keeps, where it was not the operator of the page.
+        """
+        if self._measuring is not None and why:
+            self._measuring.interruption = why
         if self._future is not None:
             self._future.cancel()
 
@@ -132,6 +147,7 @@ class MeasuringTask:
         self._hold = self.was_lost = False
         self._end, self.reason = RunState.NONE, ""
         self._times.clear()
+        self._clock = _Clock()
         self.sentences.clear()
         self._future = self._link.submit(self._whole(work))
 
@@ -146,10 +162,8 @@ class MeasuringTask:
         finally:
             self.count += 1
 
-    async def _new(self, program: Path, choice: Choice, points: str | None, again_of: int | None) -> None:
-        start, stretches = await asyncio.to_thread(
-            begun, self._link.name, program, choice.gear_set, choice.machine, choice.calibration, points, again_of
-        )
+    async def _new(self, plan: Callable[[], _Planned]) -> None:
+        start, stretches = await asyncio.to_thread(plan)
         await check_ready(self._link.connect, start, PATIENCE)
         with MeasurementStore.open(self._store) as store:
             await self._measure(store.begin_run(start), stretches)
@@ -161,6 +175,7 @@ class MeasuringTask:
 
     async def _measure(self, run: StoredRun, stretches: list[tuple[int, int]]) -> None:
         self.run = run
+        self._link.check.begin()  # the one that was made counts for this run
         self._measuring = Measuring(
             self._link.connect,
             run,
@@ -174,13 +189,45 @@ class MeasuringTask:
 
     def _heard(self, touches: int) -> None:
         before = self._times[-1][1] if self._times else 0
-        self._times.append((time.monotonic(), before + touches))
+        self._times.append((self._clock.now, before + touches))
 
     def _holds(self, point: int) -> bool:
         if self._hold:
             self.held_at = point
+            self._clock.stop()
         return self._hold
 
     def _lost(self) -> None:
         """After a loss nothing is acknowledged until somebody asks for it."""
         self._hold = self.was_lost = True
+        self._clock.stop()
+
+
+def _again(path: Path, control: str, run: int, points: str) -> _Planned:
+    with MeasurementStore.open(path) as store:
+        old = store.run(run).start
+    with TemporaryDirectory() as folder, files_of(old, None, None, None) as files:
+        program = Path(folder, Path(old.program).name)
+        program.write_bytes(old.program_text)
+        return begun(control, program, *files, points, run)
+
+
+class _Clock:
+    """Time [s] that goes on only while the run does."""
+
+    def __init__(self) -> None:
+        self._off = 0.0
+        self._stopped: float | None = None
+
+    @property
+    def now(self) -> float:
+        return (time.monotonic() if self._stopped is None else self._stopped) - self._off
+
+    def stop(self) -> None:
+        if self._stopped is None:
+            self._stopped = time.monotonic()
+
+    def go_on(self) -> None:
+        if self._stopped is not None:
+            self._off += time.monotonic() - self._stopped
+            self._stopped = None

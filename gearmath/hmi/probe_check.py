@@ -18,6 +18,12 @@ class ProbeCheck:
         """Whether the signal came and went."""
         return self.state == "done"
 
+    def begin(self) -> None:
+        """From the beginning; whether the control tells the signal is known."""
+        self._was_free = self._came = False
+        if self.state != "unknown":
+            self.state = "ask"
+
     def look(self, signal: bool | None) -> None:
         """What the control tells now; None where it does not."""
         if self.state == "done":

@@ -162,6 +162,20 @@ def programs(folder: Path) -> list[ListedProgram]:
     ]
 
 
+def probing_programs(folder: Path) -> list[str]:
+    """Those that offer touches to a host, the newest first. Raises InputError."""
+    return [one.name for one in programs(folder) if _touches(folder, one.name, stamp(folder, one.name))]
+
+
+@lru_cache(maxsize=500)
+def _touches(folder: Path, name: str, written: int) -> int:
+    """How many touches a program plans, as it was ``written`` [ns]: pages ask all the time."""
+    try:
+        return planned_touches(decoded(read(folder, name), name))
+    except InputError:
+        return 0
+
+
 def read(folder: Path, name: str) -> bytes:
     """A program of the folder. Raises InputError for a name that a control does not take, or leads elsewhere."""
     return read_bytes(folder / _kept_name(name))

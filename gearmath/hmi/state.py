@@ -29,6 +29,10 @@ class Choice:
     calibration: str = "probe.toml"
 
 
+#: What the store keeps of a run in which the server was ended.
+SERVER_ENDED = "the server was ended in mid-run"
+
+
 @dataclass
 class Shared:
     """The state of the server. ``store`` is the measurement store; sets and programs lie in its folder."""
@@ -63,7 +67,7 @@ class Shared:
     def close(self) -> None:
         """End the run, which may be resumed, and give the sessions back."""
         if self.measuring is not None:
-            self.measuring.stop()
+            self.measuring.stop(SERVER_ENDED)
         if self.link is not None:
             if self.simulated is not None:
                 self.link.submit(self.simulated.close())

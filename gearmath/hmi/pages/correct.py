@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from nicegui import ui
 
 from gearmath.control.store_evaluation import EvaluatedRun
+from gearmath.control.store_run import NOTE
 from gearmath.hmi import acting, blocks, widgets
 from gearmath.hmi.correcting import (
-    NOTE,
     WHICH,
     Accepted,
     Proposal,

@@ -44,6 +44,8 @@ def _list(text: Text, runs: list[PastRun]) -> None:
         run = one.summary
         known = text.has(f"history.{run.state}")
         state = [text(f"history.{run.state}") if known else text.quoted(run.state)]
+        if run.closed:
+            state = [text("history.closed", note=run.closed)]
         state += [] if run.refers_to is None else [text("history.again", run=run.refers_to)]
         decided = [text(f"history.{one.decision}")] if one.decision else []
         rows.append(

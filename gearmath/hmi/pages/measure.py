@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from nicegui import ui
 
+from gearmath.control.run_start import SET
 from gearmath.hmi import acting, blocks, programs_work, widgets
 from gearmath.hmi.link import ControlLink
 from gearmath.hmi.measuring_task import MeasuringTask, RunState
 from gearmath.hmi.messages import Text
-from gearmath.hmi.probe_check import ProbeCheck
-from gearmath.hmi.runs_work import UnfinishedRun, complete_runs, unfinished_runs
+from gearmath.hmi.old_runs import OldRuns, why_not
+from gearmath.hmi.runs_work import teeth_of
 from gearmath.hmi.state import Shared
 from gearmath.hmi.words import control_name, duration, run_state
 from gearmath.specs.bevel_set import MEMBERS
@@ -32,8 +32,9 @@ def build(shared: Shared, text: Text) -> None:
         return
     _going_on(shared, text, shared.measuring)
     check = _new(shared, text, shared.link, shared.measuring)
-    _unfinished(shared, text, shared.measuring)
-    _again(shared, text, shared.measuring, check)
+    runs = OldRuns(shared, text, shared.measuring)
+    runs.unfinished()
+    runs.again(check)
     _touches(text, shared.measuring)
 
 
@@ -90,9 +91,10 @@ def _touches(text: Text, task: MeasuringTask) -> None:
         run = task.run
         for point, touch in list(task.touches.items())[-_SHOWN:]:
             place = run.start.points.get(point, ()) if run is not None else ()
+            teeth = teeth_of(run.start.files.get(SET, b""), place[0]) if run is not None and place else 0
             hit = text("machine.yes") if touch.triggered else text("measure.missed")
             position = {axis: f"{getattr(touch, axis):z.4f}" for axis in "XYZAB"}
-            found.append({"id": point, "place": _place(text, place), **position, "triggered": hit})
+            found.append({"id": point, "place": _place(text, place, teeth), **position, "triggered": hit})
         found.reverse()
         if rows.rows != found:
             rows.rows = found
@@ -100,33 +102,24 @@ def _touches(text: Text, task: MeasuringTask) -> None:
     acting.watch(text, look)
 
 
-def _place(text: Text, cells: tuple[str, ...]) -> str:
-    """Where a point is: member, flank, tooth, row and column; of a calibration program the cells of its file."""
+def _place(text: Text, cells: tuple[str, ...], teeth: int) -> str:
+    """Where a point is: member, flank, tooth, row and column, all from 0; of a calibration program the cells of its
+    file. Tooth z is tooth 0, touched again at the end."""
     if len(cells) != len(_OF_MEMBER) or cells[0] not in MEMBERS:
         return " ".join(cells)
     values = dict(zip(_OF_MEMBER, cells, strict=True))
     flank = blocks.flank_names(text)[values.pop("flank")]
+    if teeth and values["tooth"] == str(teeth):
+        values["tooth"] = text("measure.tooth_again")
     return text("measure.place_of", **{**values, "member": blocks.member_name(text, cells[0]), "flank": flank})
-
-
-def _why_not(shared: Shared, text: Text, missing: str) -> str:
-    """Why no run can begin: one goes on, what is ``missing``, or there is no connection; empty where it can."""
-    assert shared.link is not None
-    assert shared.measuring is not None
-    if shared.measuring.is_going_on:
-        return text("measure.goes_on")
-    if missing or shared.link.view.connected:
-        return missing
-    return text("measure.not_connected", control=control_name(text, shared))
 
 
 def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> Callable[[], None]:
     """Returns what raises InputError while the probe is not checked."""
     chosen = {"name": ""}
-    check = ProbeCheck()
 
     def missing() -> str:
-        return _why_not(shared, text, "" if names.options else text("measure.no_program"))
+        return why_not(shared, text, "" if names.options else text("measure.no_program"))
 
     with widgets.panel(text("measure.new")):
         names = widgets.choice(text("measure.program"), [], None, lambda name: chosen.update(name=name or ""))
@@ -137,7 +130,7 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
             button(missing, text("measure.start"), lambda: ask_to_start(), "fiber_manual_record", primary=True)
 
     def checked() -> None:
-        if not (check.is_done or by_hand.value):
+        if not (link.check.is_done or (by_hand.visible and by_hand.value)):
             raise widgets.Refusal(text("measure.check_needed"))
 
     def ask_to_start() -> None:
@@ -154,84 +147,12 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
         )
 
     def look() -> None:
-        found = [one.name for one in programs_work.programs(shared.folder)]
+        found = programs_work.probing_programs(shared.folder)
         if names.options != found:
             names.set_options(found, value=chosen["name"] if chosen["name"] in found else None)
-        check.look(None if link.view.is_stale else link.view.probe)
+        check = link.check
         by_hand.visible = check.state == "unknown"
         said.show(text(f"measure.check_{check.state}"), "good" if check.is_done else "info")
 
     acting.watch(text, look)
     return checked
-
-
-def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
-    with widgets.panel(text("measure.unfinished")):
-        none = widgets.note(text("measure.none_unfinished"))
-        place = ui.element("div").classes("gm-follow")
-    shown: list[list[UnfinishedRun] | None] = [None]
-
-    def missing() -> str:
-        return _why_not(shared, text, "")
-
-    def ask_to_resume(one: UnfinishedRun) -> None:
-        values = {"run": one.run, "program": one.program, "kept": one.kept, "total": one.total}
-        acting.ask(shared, text, text("measure.resume_question", **values), lambda: task.resume(one.run))
-
-    def look() -> None:
-        own = task.run.id if task.is_going_on and task.run is not None else None
-        found = [one for one in unfinished_runs(shared.store) if one.run != own][:10]
-        none.visible = not found
-        if shown[0] != found:
-            shown[0] = found
-            draw(found)
-
-    def draw(found: list[UnfinishedRun]) -> None:
-        place.clear()
-        with place, acting.buttons() as button, ui.element("div").classes("gm-list"):
-            for one in found:
-                widgets.note(
-                    f"{text('measure.run_number', run=one.run, program=one.program)}, "
-                    f"{text('measure.points', kept=one.kept, total=one.total)}, "
-                    f"{text('measure.begun')} {one.begun[:16].replace('T', ' ')} UTC. "
-                    f"{text('measure.why')}: {text.quoted(one.why) or text('measure.open')}"
-                )
-                button(missing, text("measure.resume", run=one.run), partial(ask_to_resume, one), "replay")
-
-    acting.watch(text, look, 4 * widgets.LOOK)
-
-
-def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[], None]) -> None:
-    chosen: dict[str, int | None] = {"run": None}
-
-    def missing() -> str:
-        return _why_not(shared, text, "" if runs.options else text("measure.no_complete"))
-
-    with widgets.panel(text("measure.again")):
-        runs = widgets.choice(text("measure.again_run"), {}, None, lambda run: chosen.update(run=run))
-        points = widgets.word(text("measure.again_points"), "", "")
-        with acting.buttons() as button:
-            button(missing, text("measure.again_start"), lambda: ask_again(), "replay")
-
-    def ask_again() -> None:
-        run, wanted = chosen["run"], (points.value or "").strip()
-        if run is None:
-            raise widgets.Refusal(text("measure.run_needed"))
-        if not wanted:
-            raise widgets.Refusal(text("measure.points_needed"))
-        checked()
-        program = complete_runs(shared.store)[run]
-        choice = shared.choice
-        acting.ask(
-            shared,
-            text,
-            text("measure.again_question", points=wanted, run=run),
-            lambda: task.start(shared.folder / program, choice, wanted, run),
-        )
-
-    def look() -> None:
-        found = {run: f"{run}: {program}" for run, program in complete_runs(shared.store).items()}
-        if runs.options != found:
-            runs.set_options(found, value=chosen["run"] if chosen["run"] in found else None)
-
-    acting.watch(text, look, 4 * widgets.LOOK)

@@ -39,7 +39,7 @@ def test_what_cannot_act_says_why_beside_it_or_at_once_and_that_goes_at_the_next
     said.wait_for(state="hidden")
     one.press("Deflect or release the probe")
     one.go("measure")
-    one.sees("There is no program yet: write one on the page Programs.", one.panel("New run"))
+    one.sees("There is no probing program yet: write one on the page Programs.", one.panel("New run"))
     one.sees("There is no complete run yet.", one.panel("Touch points again"))
     for label in ("Start recording", "Record these points again"):
         expect(one.page.get_by_role("button", name=label, exact=True)).to_be_disabled()
