@@ -16,6 +16,7 @@ from gearmath.front.probing import probing
 from gearmath.front.programs import Program, cutting
 from gearmath.front.sets import load_set
 from gearmath.hmi.catalog import changed_at
+from gearmath.hmi.correcting import free_file
 from gearmath.hmi.numbers import Limits
 from gearmath.hmi.state import Choice
 from gearmath.hmi.work import Progress
@@ -78,12 +79,12 @@ def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, prog
     ComputationError.
     """
     machine, member = load_machine(choice.machine), load_set(choice.gear_set).member(choice.member)
-    file = _file(folder, name, machine.spec)
+    file = _new_file(folder, name, machine.spec)
     check_spindle_speed(file.stem, machine.spec, job.spindle_rpm)
     whole = replace(job, spaces=range(member.teeth))
     made = cutting(member, machine, file.stem, whole, file=file.name, begin=progress.begin)
     times = timing(made.path, machine.spec)
-    made.save(file)
+    _save(made, file)
     return WrittenProgram(file, made.blocks, times.feed_seconds + times.rapid_seconds, None, "")
 
 
@@ -93,11 +94,11 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
     It is run before it is written: the probe stays clear of everything.
     """
     machine, member = load_machine(choice.machine), load_set(choice.gear_set).member(choice.member)
-    file = _file(folder, name, machine.spec)
+    file = _new_file(folder, name, machine.spec)
     what = chosen.topography, chosen.pitch, chosen.registration, chosen.repeat
     probe = load_probe(choice.calibration)
     made = probing(member, machine, probe, file.stem, *what, file=file.name, begin=progress.begin)
-    made.save(file)
+    _save(made, file)
     return WrittenProgram(file, made.blocks, None, made.touches, made.clearance)
 
 
@@ -199,6 +200,30 @@ def _kept_name(name: str) -> str:
     """The name as its control keeps it, which its ending tells. Raises InputError."""
     by_suffix = (one.file_name for one in known() if name.endswith(one.suffix))
     return next(by_suffix, control_name)(name)
+
+
+def free_name(folder: Path, choice: Choice, name: str) -> tuple[str, str]:
+    """The file that a program of this name would be written over, empty where there is none; and the name, or with the
+    first number behind it that is free. Raises InputError for a name that is refused."""
+    file = _file(folder, name, load_machine(choice.machine).spec)
+    free = free_file(folder, file.stem, file.suffix)
+    return ("" if free == file else file.name), free.stem
+
+
+def _new_file(folder: Path, name: str, machine: MillingMachine) -> Path:
+    """The file of a program that is not there yet. Raises InputError where it is."""
+    file = _file(folder, name, machine)
+    if file.exists():
+        free = free_file(folder, file.stem, file.suffix)
+        raise InputError(f"{file.name}: is there already, and is not written over: {free.name} is free")
+    return file
+
+
+def _save(made: Program, file: Path) -> None:
+    """Write a program. Raises InputError where somebody has written one of its name in the meantime."""
+    if file.exists():
+        raise InputError(f"{file.name}: was written by another one in the meantime, and is not written over")
+    made.save(file)
 
 
 def _file(folder: Path, name: str, machine: MillingMachine) -> Path:

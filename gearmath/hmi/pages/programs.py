@@ -140,15 +140,33 @@ def _writing(
 ) -> None:
     """The button that reads the fields and starts to write the program they ask for, its progress and the verdict."""
     work = shared.works[kind]
-    button = widgets.button(label[0], lambda: start(), label[1], primary=True)
+
+    def missing() -> str | None:
+        if work.running:
+            return None  # the bar says it
+        return text("programs.unsaved") if shared.desk.typed else ""
+
+    with acting.buttons() as button:
+        button(missing, label[0], lambda: ask_to_start(), label[1], primary=True)
     said = widgets.Message()
 
-    def start() -> None:
-        wanted, what, choice = name.value or "", asked(), shared.choice
+    def ask_to_start() -> None:
+        what, choice = asked(), shared.choice  # what the fields refuse is said first
+        there, free = programs_work.free_name(shared.folder, choice, name.value or "")
+        if not there:
+            start(choice, name.value or "", what)
+            return
+
+        def beside() -> None:
+            name.value = free
+            start(choice, free, what)
+
+        acting.ask(shared, text, text("programs.beside_question", there=there, free=free), beside)
+
+    def start(choice: Choice, wanted: str, what: Asked) -> None:
         work.start(
             wanted, lambda progress: write(shared.folder, choice, wanted, what, progress), (choice, wanted, what)
         )
-        button.enabled = False  # the second click of a double one is none
 
     def is_current() -> bool:
         try:
@@ -167,11 +185,7 @@ def _writing(
         else:
             said.show(text("shell.outdated", words=words))
 
-    def look() -> None:
-        button.enabled = not work.running
-
     widgets.progress(text, work, lambda: text("programs.writing", name=work.name), ended, is_current)
-    acting.watch(text, look)
 
 
 def _verdict(text: Text, found: WrittenProgram) -> str:
