@@ -40,6 +40,7 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
     from gearmath.control.store import MeasurementStore
     from gearmath.files import check_place, check_writable
     from gearmath.hmi.alarm_book import AlarmBook
+    from gearmath.hmi.kept_choice import keep_choice, kept_choice
     from gearmath.hmi.state import Shared
 
     check_place(store_file)
@@ -51,7 +52,11 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
         if is_empty:
             click.echo(f"{store_file}: was empty, and is a new measurement store now")
     alarms = store_file.with_name(f"{store_file.stem}_alarms.json")
-    shared = Shared(store_file, book=AlarmBook(alarms))
+    chosen = store_file.with_name(f"{store_file.stem}_choice.json")
+    choice, lost = kept_choice(chosen)
+    for sentence in lost:
+        click.echo(sentence)
+    shared = Shared(store_file, choice, book=AlarmBook(alarms), keep=lambda choice: keep_choice(chosen, choice))
     if control is not None:
         _connect(shared, control, insecure)
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import lru_cache
@@ -84,7 +85,7 @@ def write_cutting(folder: Path, choice: Choice, name: str, job: CuttingJob, prog
     whole = replace(job, spaces=range(member.teeth))
     made = cutting(member, machine, file.stem, whole, file=file.name, begin=progress.begin)
     times = timing(made.path, machine.spec)
-    _save(made, file)
+    _save(made.save, file)
     return WrittenProgram(file, made.blocks, times.feed_seconds + times.rapid_seconds, None, "")
 
 
@@ -98,7 +99,7 @@ def write_probing(folder: Path, choice: Choice, name: str, chosen: ProbingChoice
     what = chosen.topography, chosen.pitch, chosen.registration, chosen.repeat
     probe = load_probe(choice.calibration)
     made = probing(member, machine, probe, file.stem, *what, file=file.name, begin=progress.begin)
-    _save(made, file)
+    _save(made.save, file)
     return WrittenProgram(file, made.blocks, None, made.touches, made.clearance)
 
 
@@ -219,11 +220,11 @@ def _new_file(folder: Path, name: str, machine: MillingMachine) -> Path:
     return file
 
 
-def _save(made: Program, file: Path) -> None:
+def _save(save: Callable[[Path], object], file: Path) -> None:
     """Write a program. Raises InputError where somebody has written one of its name in the meantime."""
     if file.exists():
         raise InputError(f"{file.name}: was written by another one in the meantime, and is not written over")
-    made.save(file)
+    save(file)
 
 
 def _file(folder: Path, name: str, machine: MillingMachine) -> Path:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearmath.hmi.alarm_book import AlarmBook
 from gearmath.hmi.desk import Desk
+from gearmath.hmi.gear_settings import Place
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.tickets import Tickets
 from gearmath.hmi.work import Work
@@ -49,6 +51,10 @@ class Shared:
     """The measuring run, where there is a control."""
     simulated: SimulatedMachine | None = None
     """The operator's side of the simulated control, where it is that."""
+    keep: Callable[[Choice], object] = lambda choice: None
+    """Hears of every choice that was changed."""
+    unsaved: dict[tuple[str, str], dict[Place, float]] = field(default_factory=dict)
+    """What was typed and not saved for the members that are not chosen, by set and member."""
     desk: Desk = field(init=False)
     """What the pages of the gear side look at together."""
 
@@ -61,8 +67,17 @@ class Shared:
         return self.store.absolute().parent
 
     def choose(self, **changes: str) -> None:
-        """Change the choice: ``gear_set``, ``member``, ``machine``, ``calibration``."""
-        self.choice = replace(self.choice, **changes)
+        """Change the choice: ``gear_set``, ``member``, ``machine``, ``calibration``.
+
+        What was typed for a member is not lost with it: it is there again when that one is chosen again.
+        """
+        before, self.choice = self.choice, replace(self.choice, **changes)
+        old, new = ((one.gear_set, one.member) for one in (before, self.choice))
+        if old != new:
+            self.unsaved[old] = self.desk.typed
+            self.desk.typed = self.unsaved.pop(new, {})
+        if self.choice != before:
+            self.keep(self.choice)
 
     def close(self) -> None:
         """End the run, which may be resumed, and give the sessions back."""

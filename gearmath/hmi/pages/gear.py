@@ -27,6 +27,7 @@ def build(shared: Shared, text: Text) -> None:
     page = _GearPage(GearDraft(shared, text))
     with widgets.panel(text("gear.choice")):
         blocks.follow(lambda: shared.choice, page.choices)
+        blocks.marked(page.unsaved)
     with widgets.panel(text("gear.blank")):
         page.draft.kept(page.blank)
     with widgets.panel(text("gear.settings"), wide=True):
@@ -47,7 +48,7 @@ class _GearPage:
         """What this page has typed, or has shown as typed."""
 
     def choices(self) -> None:
-        """Set, member, machine and probe. What was typed belongs to the member, and goes with it."""
+        """Set, member, machine and probe. What was typed belongs to the member, and comes back with it."""
         text, shared = self.text, self.shared
         for kind in ("gear_set", "machine", "calibration"):
             options = files_of(kind, shared.folder)
@@ -59,6 +60,12 @@ class _GearPage:
                 chosen = shared.choice.member
                 widgets.choice(text("gear.member"), members, chosen, lambda name: self._choose(member=name))
         widgets.note(text("gear.bundled"))
+
+    def unsaved(self) -> str:
+        """For which other members something was typed that is not saved, whoever chose another one."""
+        typed = [key for key, values in self.shared.unsaved.items() if values]
+        names = (f"{Path(gear_set).name}, {self.text(f'blocks.{member}')}" for gear_set, member in typed)
+        return self.text("gear.unsaved", members="; ".join(names)) if typed else ""
 
     def blank(self, found: Draft) -> None:
         """What the set is, and the blank of the member."""
@@ -159,6 +166,7 @@ class _GearPage:
     def _save(self, found: Draft) -> None:
         target = free_file(self.shared.folder, f"{found.path.stem}_{found.member.name}", ".toml")
         save_edited(found.path, target, found.member, found.edited)
+        self.desk.typed = {}
         self._choose(gear_set=str(target))
         widgets.say(self.text("gear.saved", name=target.name), "good")
 
@@ -167,6 +175,4 @@ class _GearPage:
             for kind in ("gear_set", "machine", "calibration"):
                 if kind in changes:
                     check(kind, changes[kind])
-            if {"gear_set", "member"} & changes.keys():
-                self.desk.typed = {}
             self.shared.choose(**changes)

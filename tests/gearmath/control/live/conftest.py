@@ -33,6 +33,7 @@ IF R91>0
 UTO=R91
 ENDIF
 R101=UFROM-1
+WRITE(UERR,"TEN_T","# planned: 10 touches")
 WRITE(UERR,"TEN_T","run,point,member,flank,tooth,row,col,X,Y,Z,A,B,triggered")
 G17 G40 G90 G94 G710 G54 G60
 T="PROBE" D1
