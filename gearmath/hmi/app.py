@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import importlib
 import secrets
+import signal
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from copy import copy
+from types import FrameType
 
 import uvicorn
 from fastapi import FastAPI, Request
@@ -23,6 +26,8 @@ from gearmath.hmi.visitor import is_dark, language_of
 
 #: How long the server keeps a page whose browser is gone. [s]
 _RECONNECT = 30.0
+#: How long what is under way may take when the server ends. [s]
+_LAST_WORDS = 5
 
 
 def application(shared: Shared) -> FastAPI:
@@ -63,7 +68,8 @@ def _register(shared: Shared, name: str) -> None:
 def serve(shared: Shared, host: str, port: int, show: Callable[[str], object]) -> None:
     """Serve until Ctrl-C. ``show`` gets the address with the token as soon as it answers.
 
-    Raises InputError where the port cannot be used, and for an address that is none of this computer alone.
+    Raises KeyboardInterrupt where Ctrl-C has ended it, InputError where the port cannot be used, and for an address
+    that is none of this computer alone.
     """
     if host in ("0.0.0.0", "::", ""):
         raise InputError(f"--host {host}: must be one address of this computer: it is the name that browsers may use")
@@ -73,9 +79,29 @@ def serve(shared: Shared, host: str, port: int, show: Callable[[str], object]) -
     names = dict.fromkeys((*LOOPBACK, f"[{host}]" if ":" in host else host))
     gate = Gate(PlainErrors(application(shared)), token, [f"{name}:{port}" for name in names], f"gearmath_{port}")
     # its own lines would show addresses, and with them the token
-    server = uvicorn.Server(uvicorn.Config(gate, log_level="warning", access_log=False, ws="websockets-sansio"))
+    config = uvicorn.Config(
+        gate, log_level="warning", access_log=False, ws="websockets-sansio", timeout_graceful_shutdown=_LAST_WORDS
+    )
+    server = _Server(config)
     show(f"http://{f'[{host}]' if ':' in host else host}:{port}{LOGIN}?token={token}")
     server.run(sockets=[listening])
+    if server.was_asked:
+        raise KeyboardInterrupt
+
+
+class _Server(uvicorn.Server):
+    """Ended by the first Ctrl-C. Further ones, until the process is over, disturb nothing that is still to be kept."""
+
+    was_asked = False
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        for sign in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(sign, self.handle_exit)
+        yield
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        self.was_asked = self.should_exit = True
 
 
 def _listen(host: str, port: int) -> socket.socket:

@@ -7,7 +7,9 @@ import re
 import subprocess
 import sys
 import threading
+import time
 from pathlib import Path
+from signal import SIGINT
 
 import pytest
 
@@ -229,3 +231,33 @@ def test_only_programs_whose_names_a_control_takes_are_listed_and_read(tmp_path:
     for name in ("../CUT.MPF", "..\\CUT.MPF", "/etc/passwd", "CUT.MPF\0", "runs.db"):
         with pytest.raises(InputError):
             read(tmp_path, name)
+
+
+#: A server of nothing, and what is kept at its end.
+_SERVER = """
+import time, uvicorn
+from gearmath.hmi.app import _Server
+async def nothing(scope, receive, send):
+    assert scope["type"] == "http"
+server = _Server(uvicorn.Config(nothing, port=0, lifespan="off", log_level="info"))
+try:
+    server.run()
+finally:
+    time.sleep(0.5)
+    print("kept", flush=True)
+"""
+
+
+def test_ctrl_c_again_and_again_ends_the_server_once_and_without_a_traceback() -> None:
+    command = [sys.executable, "-c", _SERVER]
+    server = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert server.stderr is not None
+    while "Uvicorn running" not in server.stderr.readline():
+        assert server.poll() is None
+    for _ in range(4):
+        server.send_signal(SIGINT)
+        time.sleep(0.05)
+    out, err = server.communicate(timeout=60)
+    assert out == "kept\n"
+    assert "Traceback" not in err
+    assert server.returncode == 0
