@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gearmath.hmi.language_files import language_file
-from gearmath.hmi.reasons import german
+from gearmath.hmi.reasons import english, german
 
 LANGUAGES = {"en": "English", "de": "Deutsch"}
 
@@ -25,7 +25,7 @@ class Text:
         German page is said to be so. Nothing of nothing."""
         said = str(words)
         known = german(said) if self.language == "de" else None
-        return known or (self("shell.quoted", words=said) if said else "")
+        return known or (self("shell.quoted", words=english(said)) if said else "")
 
     def has(self, key: str) -> bool:
         """Whether there is a message of this key: words of a control or a file may have none."""

@@ -39,6 +39,13 @@ def german(sentence: str) -> str | None:
     return None
 
 
+def english(sentence: str) -> str:
+    """The sentence without the options of a command, which a page does not have."""
+    for option, words in language_file("reasons.toml")["page"].items():
+        sentence = sentence.replace(option, words)
+    return sentence
+
+
 def _part(words: str) -> str | None:
     for pattern, translated in _patterns():
         found = pattern.fullmatch(words)

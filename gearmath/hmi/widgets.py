@@ -119,8 +119,9 @@ def choice(label: str, options: Sequence[str] | dict[Any, str], value: Any, chan
 
 def words_of(error: Exception) -> str:
     """Why something failed, framed where it is in another language than the page."""
-    is_foreign = ui.context.client.page.language == "de" and not isinstance(error, Refusal)
-    return Text("de").quoted(error) if is_foreign else str(error)
+    if isinstance(error, Refusal):
+        return str(error)
+    return Text("de" if ui.context.client.page.language == "de" else "en").quoted(error)
 
 
 def say_error(error: Exception) -> None:

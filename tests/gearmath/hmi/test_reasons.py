@@ -15,6 +15,7 @@ from gearmath.control.store import MeasurementStore
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.language_files import language_file
 from gearmath.hmi.messages import Text
+from gearmath.hmi.reasons import english as of_page
 from gearmath.hmi.reasons import german
 from gearmath.machine.control.file_names import control_name
 from gearmath.machine.planning.cut_plan import CuttingJob
@@ -165,3 +166,10 @@ def test_each_part_is_one_that_the_library_says() -> None:
         if len(longest) > 12 and longest not in said:
             lost.append(english)
     assert len(lost) <= 15, "\n".join(lost)
+
+
+def test_no_sentence_that_a_page_can_meet_names_an_option_of_a_command() -> None:
+    found = {place: of_page(re.sub("'gearmath .*?'", "", sentence)) for place, sentence in _raised().items()}
+    of_the_command = "hmi/app.py"  # which has no page yet
+    named = {place: words for place, words in found.items() if re.search(r"(^|[ ('])--[a-z]", words)}
+    assert {place: words for place, words in named.items() if not place.startswith(of_the_command)} == {}
