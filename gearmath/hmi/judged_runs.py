@@ -63,6 +63,10 @@ class JudgedRuns:
         """The runs that touched every point of a member, or, with the run that they refer to, did so again."""
         return [run for run in self.summaries() if run.member is not None and run.is_complete]
 
+    def whole(self) -> list[RunSummary]:
+        """Those of them that touched every point themselves: of the others most points are those of an older run."""
+        return [run for run in self.of_members() if run.refers_to is None]
+
     def evaluated(self, run: int, progress: Progress = lambda _: None) -> EvaluatedRun:
         """A run evaluated by set, machine and probe as stored. Raises InputError as :func:`evaluate_run`."""
         with self._lock:

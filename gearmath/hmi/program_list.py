@@ -118,10 +118,12 @@ def _milled(text: Text, shared: Shared, chosen: Callable[[], str]) -> None:
             said.show("")
             return
         words = text("programs.milled", name=found.name, um=f"{1000 * found.largest:z.3f}")
+        if found.is_changed:
+            words += " " + text("programs.milled_changed")
         if found.faults:
             words += " " + text("programs.faults", faults="; ".join(map(text.quoted, found.faults)))
         if is_current():
-            said.show(words, "error" if found.faults else "good")
+            said.show(words, "error" if found.faults else "info" if found.is_changed else "good")
         else:
             said.show(text("shell.outdated", words=words))
 

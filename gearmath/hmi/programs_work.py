@@ -35,6 +35,7 @@ from gearmath.machine.planning.cut_plan import (
 )
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
+from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.measurement import MOST_TOUCHES
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.touch_csv import planned_touches
@@ -56,12 +57,14 @@ class WrittenProgram:
 
 @dataclass(frozen=True)
 class MilledProgram:
-    """What a cutting program leaves of the metal: largest deviation [mm] on a right machine and on that of a shop."""
+    """What a cutting program leaves of the metal: largest deviation [mm] from the nominal flanks on a right machine and
+    on that of a shop. ``is_changed`` says whether the set itself is other than nominal."""
 
     name: str
     largest: float
     largest_of_shop: float | None
     faults: list[str] = field(default_factory=list)
+    is_changed: bool = False
 
 
 @dataclass(frozen=True)
@@ -113,7 +116,14 @@ def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Pr
     progress.total = 2 * member.teeth * (1 if shop is None else 2)
     largest = float(abs(program.mill(None, progress).deviation).max())
     of_shop = None if shop is None else float(abs(program.mill(load_shop(shop), progress).deviation).max())
-    return MilledProgram(name, largest, of_shop, program.faults())
+    return MilledProgram(name, largest, of_shop, program.faults(), _is_changed(member.spec))
+
+
+def _is_changed(member: Member) -> bool:
+    """Whether a member is cut otherwise than its nominal flanks were."""
+    flanks = [member.flank(name) for name in FLANKS]
+    now = [(one.vector.tolist(), one.motion, one.blade_spheric_radius) for one in flanks]
+    return now != [(one.nominal.vector.tolist(), one.nominal_motion, one.nominal_spheric_radius) for one in flanks]
 
 
 def limits(choice: Choice, dry_run: bool) -> dict[str, Limits]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from dataclasses import dataclass
 
 from gearmath.control.store_compare import Comparison, compare
@@ -17,13 +18,20 @@ MOST = 12
 
 
 @dataclass(frozen=True)
-class PastRun:
-    """How a run stands, and what was last decided on its correction: accepted, rejected, or nothing; with its note."""
+class Decided:
+    """What was decided on a correction, accepted or rejected, with its note and the files that were written."""
 
-    summary: RunSummary
     decision: str
     note: str
     files: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class PastRun:
+    """How a run stands, and all that was decided on its corrections, the last one at the end."""
+
+    summary: RunSummary
+    decided: tuple[Decided, ...]
 
 
 def past_runs(runs: JudgedRuns) -> list[PastRun]:
@@ -33,8 +41,13 @@ def past_runs(runs: JudgedRuns) -> list[PastRun]:
         return []
     with runs.opened() as store:
         rows = store.execute("SELECT run, content FROM result WHERE kind = ? ORDER BY run, number", DECISION)
-    decided = {run: json.loads(content) for run, content in rows}
-    return [_past(summary, decided.get(summary.run)) for summary in reversed(found)]
+    decided: dict[int, list[Decided]] = defaultdict(list)
+    for run, content in rows:
+        one = json.loads(content)
+        decided[run].append(
+            Decided(one["decision"], one["note"], tuple(file["name"] for file in one["files"].values()))
+        )
+    return [PastRun(summary, tuple(decided[summary.run])) for summary in reversed(found)]
 
 
 def comparison(runs: JudgedRuns, numbers: tuple[int, ...], progress: Progress = lambda _: None) -> Comparison:
@@ -49,14 +62,14 @@ def comparison(runs: JudgedRuns, numbers: tuple[int, ...], progress: Progress = 
 
 
 def trend(runs: JudgedRuns, like: int, progress: Progress = lambda _: None) -> tuple[Comparison, list[str]]:
-    """The figures over the last runs of the member of run ``like``, and why runs were left out.
+    """The figures over the last whole runs of the member of run ``like``, and why runs were left out.
 
     Raises InputError where there are less than two of them.
     """
     model = runs.evaluated(like, progress)
     found: list[EvaluatedRun] = []
     left_out: list[str] = []
-    for summary in reversed(runs.of_members()):
+    for summary in reversed(runs.whole()):
         if len(found) == MOST:
             break
         try:
@@ -69,11 +82,3 @@ def trend(runs: JudgedRuns, like: int, progress: Progress = lambda _: None) -> t
     if len(found) < 2:
         raise InputError(f"run {like}: a trend needs two runs of the {model.name}, and there is one")
     return compare(found[::-1]), left_out
-
-
-def _past(summary: RunSummary, decided: dict | None) -> PastRun:
-    if decided is None:
-        return PastRun(summary, "", "", ())
-    return PastRun(
-        summary, decided["decision"], decided["note"], tuple(one["name"] for one in decided["files"].values())
-    )

@@ -145,6 +145,7 @@ class _CorrectPage:
                 widgets.Message(f"{flanks}: {text('correct.not_converged')}", "warning")
         head = [f"{text(f'correct.{key}')} / µm" for key in ("rms", "expected", "reachable")]
         blocks.plain_table(text("correct.limits"), [text("correct.flank"), *head, text("correct.binds")], rows)
+        widgets.note(text("correct.turned"))
         for flank, (toe, heel) in proposal.values["root_line_um"].items():
             widgets.note(text("correct.root", flank=self.names[flank], toe=f"{toe:+z.1f}", heel=f"{heel:+z.1f}"))
 
@@ -197,7 +198,10 @@ class _CorrectPage:
         def rejected() -> None:
             found = proposal()
             assert found is not None  # else something is missing
+            if not (note.value or "").strip():
+                raise widgets.Refusal(text("correct.note_needed"))
             reject(desk.runs, found, note.value or "")
+            note.value = ""
             desk.wanted.pop("correct", None)
             desk.decisions += 1
             widgets.say(text("correct.kept"), "good")
@@ -230,11 +234,11 @@ class _CorrectPage:
 
     def _decided(self) -> None:
         run = self.desk.shown_run()
-        found = next((one for one in past_runs(self.desk.runs) if one.summary.run == run and one.decision), None)
-        if found is not None:
-            said = self.text(f"correct.was_{found.decision}")
-            words = ", ".join(part for part in (found.note, *found.files) if part)
-            widgets.note(f"{said}: {words}" if words else said)
+        for past in (one for one in past_runs(self.desk.runs) if one.summary.run == run):
+            for found in past.decided:
+                said = self.text(f"correct.was_{found.decision}")
+                words = ", ".join(part for part in (found.note, *found.files) if part)
+                widgets.note(f"{said}: {words}" if words else said)
 
 
 def _measured(desk: Desk, run: int, progress: Progress) -> _Measured:

@@ -47,7 +47,10 @@ def _list(text: Text, runs: list[PastRun]) -> None:
         if run.closed:
             state = [text("history.closed", note=run.closed)]
         state += [] if run.refers_to is None else [text("history.again", run=run.refers_to)]
-        decided = [text(f"history.{one.decision}")] if one.decision else []
+        decided = [
+            ", ".join(part for part in (text(f"history.{each.decision}"), each.note, *each.files) if part)
+            for each in one.decided
+        ]
         rows.append(
             [
                 str(run.run),
@@ -58,7 +61,7 @@ def _list(text: Text, runs: list[PastRun]) -> None:
                 f"{run.touches} / {run.points}",
                 str(run.alarms),
                 ", ".join(state),
-                ", ".join(part for part in (*decided, one.note, *one.files) if part),
+                "; ".join(decided),
             ]
         )
     keys = ("run", "begun", "member", "program", "operator", "touches", "alarms", "state", "decision")
@@ -126,11 +129,11 @@ def _trend(shared: Shared, text: Text) -> None:
     desk = shared.desk
 
     def now() -> Hashable:
-        return desk.shown_run(), tuple(one.run for one in desk.runs.of_members())
+        return desk.shown_run(), tuple(one.run for one in desk.runs.whole())
 
     def missing() -> str:
-        runs = {one.run: one.member for one in desk.runs.of_members()}
-        alike = [run for run, member in runs.items() if member == runs.get(desk.shown_run() or 0)]
+        members = {one.run: one.member for one in desk.runs.of_members()}
+        alike = [one for one in desk.runs.whole() if one.member == members.get(desk.shown_run() or 0)]
         return "" if len(alike) > 1 else text("history.too_few_for_trend")
 
     def key() -> Hashable:
@@ -174,11 +177,11 @@ def _show_trend(text: Text, found: Comparison, svg: str, left_out: list[str]) ->
 
 
 def _other(shared: Shared) -> int | None:
-    """The run to compare with: the one chosen, or else the one before the run that is shown."""
+    """The run to compare with: the one chosen, or else the last whole one before the run that is shown."""
     desk, shown = shared.desk, shared.desk.shown_run()
     if desk.compared is not None:
         return desk.compared
-    others = [one.run for one in desk.runs.of_members() if one.run != shown]
+    others = [one.run for one in desk.runs.whole() if one.run != shown]
     return max((run for run in others if shown is not None and run < shown), default=others[-1] if others else None)
 
 

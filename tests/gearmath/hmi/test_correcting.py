@@ -12,9 +12,10 @@ import pytest
 
 import gearmath as gm
 from gearmath.control.store import MeasurementStore
+from gearmath.control.store_run import NOTE
 from gearmath.errors import InputError
 from gearmath.hmi import correcting
-from gearmath.hmi.correcting import NOTE, accept, charts_before, propose, reject, scale_before
+from gearmath.hmi.correcting import accept, charts_before, propose, reject, scale_before
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.run_history import past_runs
 from tests.gearmath.hmi.stored import FILES
@@ -108,7 +109,14 @@ def test_every_note_stays_with_the_run(runs: JudgedRuns, own_runs: Path) -> None
     reject(runs, proposal, "once more")
     with pytest.raises(InputError, match=f"must have at most {NOTE}"):
         reject(runs, proposal, "x" * (NOTE + 1))
-    assert (past_runs(runs)[1].decision, past_runs(runs)[1].note) == ("rejected", "once more")
+    for nothing in ("", "  "):
+        with pytest.raises(InputError, match="note: is missing: say why"):
+            reject(runs, proposal, nothing)
+    decided = past_runs(runs)[1].decided
+    assert [(one.decision, one.note) for one in decided] == [
+        ("rejected", "work was loose <b>"),
+        ("rejected", "once more"),
+    ]
     with MeasurementStore.open(own_runs, create=False) as store:
         rows = store.execute("SELECT content FROM result WHERE run = 2 AND kind = ?", correcting.DECISION)
     assert [json.loads(content)["note"] for (content,) in rows] == ["work was loose <b>", "once more"]

@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from gearmath.control.store import MeasurementStore
 from gearmath.errors import InputError
 from gearmath.hmi.drawing import drawn, translated
 from gearmath.hmi.judged_runs import JudgedRuns
+from gearmath.hmi.pages.history import _other
 from gearmath.hmi.result_view import result_of, sure_of
 from gearmath.hmi.run_history import comparison, past_runs, trend
+from gearmath.hmi.state import Shared
 from tests.gearmath.hmi.stored import SHARES, stock
 
 Command = Callable[..., tuple[int, str, str]]
@@ -98,7 +102,7 @@ def test_runs_are_listed_newest_first_with_what_a_control_said_as_it_was(runs: J
     found = past_runs(runs)
     assert [one.summary.run for one in found] == [3, 2, 1]
     assert found[0].summary.state == "alarm 65001: <script>alert(2)</script>"
-    assert {one.decision for one in found} == {""}
+    assert {one.decided for one in found} == {()}
 
 
 def test_a_comparison_sees_the_stock_shrink_and_the_trend_says_what_was_left_out(runs: JudgedRuns) -> None:
@@ -135,3 +139,24 @@ def test_drawings_of_one_page_share_no_names() -> None:
     names = [{part.split('"')[0] for part in drawn(make).split(' id="')[1:]} for _ in range(2)]
     assert names[0]
     assert not names[0] & names[1]
+
+
+def test_a_run_of_chosen_points_is_in_no_trend_and_no_default_partner(own_runs: Path) -> None:
+    """Most of its points are those of the older run."""
+    with MeasurementStore.open(own_runs) as store:
+        old = store.run(2)
+        points = dict(list(old.start.points.items())[:2])
+        again = store.begin_run(replace(old.start, points=points, refers_to=2))
+        for point in points:
+            again.commit_touch(point, old.touches()[point])
+        again.finish("complete")
+    runs = JudgedRuns(own_runs)
+    assert [one.run for one in runs.of_members()] == [1, 2, again.id]
+    assert [one.run for one in runs.whole()] == [1, 2]
+    over_time, _ = trend(runs, again.id)
+    assert [one.run.id for one in over_time.runs] == [1, 2]
+    shared = Shared(own_runs)
+    shared.desk.run = again.id
+    assert _other(shared) == 2
+    shared.desk.run = 1
+    assert _other(shared) == 2

@@ -291,6 +291,7 @@ def test_chosen_points_are_touched_again_as_a_run_that_refers_to_the_old_one(
     machine.nc.start()
     one.sees("Complete: all touches are in the store")
     old = len(_runs(page))
+    _check_probe(one, machine)  # that of the run before counted for that one
     one.choose("Run", f"{old}: TEN.MPF")
     one.fill("Points, such as 3,17-20", "2,4-6")
     begin = len(machine.nc.log)

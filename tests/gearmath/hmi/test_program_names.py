@@ -10,6 +10,7 @@ import pytest
 from nicegui import ui
 
 from gearmath.errors import InputError
+from gearmath.front.sets import load_set
 from gearmath.hmi import programs_work
 from gearmath.hmi.programs_work import free_name, write_cutting, write_probing
 from gearmath.hmi.state import Choice, Shared
@@ -87,3 +88,12 @@ def test_no_program_is_written_while_settings_are_typed_and_not_saved(
     shared.desk.typed = {}
     page.look()
     assert [one.enabled for one in buttons] == [True, True]
+
+
+def test_a_set_that_is_other_than_nominal_is_said_to_be_where_it_is_milled(tmp_path: Path) -> None:
+    """The deviation is from the nominal flanks: of a changed set it is that change, and no verdict on the program."""
+    member = load_set(Choice().gear_set).member("pinion")
+    assert not programs_work._is_changed(member.spec)
+    for name, value in (("radial_distance", 74.9), ("cutter_tilt", 0.1)):
+        assert programs_work._is_changed(member.with_values(concave={name: value}).spec)
+    assert not programs_work._is_changed(member.with_values(concave={"cutter_tilt": 0.1}).as_nominal().spec)
