@@ -116,7 +116,7 @@ def _compare(text: Text, found: Comparison, svg: str, _: list[str]) -> None:
     first, last = (text("history.of_run", run=one.run.id) for one in found.runs)
     head = [text("history.figure"), *(f"{word} / µm" for word in (first, last, text("history.change"), "u"))]
     blocks.plain_table(text("history.figures"), [*head, text("history.verdict")], rows)
-    blocks.chart(text, svg, text("history.comparison"))
+    blocks.chart(text, svg, text("history.comparison"), across=True)
 
 
 def _trend(shared: Shared, text: Text) -> None:
