@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -105,15 +105,15 @@ def facts(rows: Iterable[tuple[str, str, str]]) -> None:
         widgets.fact(label, value, unit)
 
 
-def chart(text: Text, svg: str, label: str, across: bool = False) -> None:
+def chart(text: Text, svg: str, label: str, across: bool = False, names: Mapping[str, str] | None = None) -> None:
     """A drawing of the package under its label, its words in the language of the page, on white.
 
-    One of many parts is moved ``across`` where the screen is narrow, and stays legible.
+    One of many parts is moved ``across`` where the screen is narrow, and stays legible. ``names`` are further words.
     """
     with ui.element("figure").classes("gm-chart gm-across" if across else "gm-chart"):
         with ui.element("figcaption"):
             ui.label(label).classes("gm-inline gm-note")
-        widgets.picture(translated(svg, words_of_charts(text)), label).classes("gm-paper")
+        widgets.picture(translated(svg, words_of_charts(text) | dict(names or {})), label).classes("gm-paper")
 
 
 def words_of_charts(text: Text) -> dict[str, str]:

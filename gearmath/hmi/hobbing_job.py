@@ -117,6 +117,12 @@ def predicted(
     return tuple(found.classes), found.accuracy_class
 
 
+def figure_symbol(name: str) -> str:
+    """A figure as drawings have it: f_Hα for f_H_alpha."""
+    sign, *index = name.split("_")
+    return f"{sign}_{''.join({'alpha': 'α', 'beta': 'β'}.get(part, part) for part in index)}"
+
+
 def plan_lines(job: GearboxJob) -> list[PlanLine]:
     """Ratio, rates against their limits and the motion of the motor."""
     found = [

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from gearmath.control.interface import RunStart, Touch
+from gearmath.control.interface import ChannelState, RunStart, Touch
 from gearmath.control.measuring import Measuring, check_ready
 from gearmath.control.run_start import begun, files_of, resumed
 from gearmath.control.store import MeasurementStore
@@ -31,6 +31,7 @@ class RunState(StrEnum):
     PREPARING = "preparing"
     READY = "ready"
     RUNNING = "running"
+    INTERRUPTED = "interrupted"
     HOLDING = "holding"
     HELD = "held"
     LOST = "lost"
@@ -116,7 +117,11 @@ class MeasuringTask:
             return RunState.LOST
         if self._hold:
             return RunState.HOLDING
-        return RunState.RUNNING if self._measuring.is_started else RunState.READY
+        if not self._measuring.is_started:
+            return RunState.READY
+        status = self._link.view.status
+        stands = status is not None and status.channel is ChannelState.INTERRUPTED
+        return RunState.INTERRUPTED if stands else RunState.RUNNING
 
     @property
     def touches(self) -> Mapping[int, Touch]:

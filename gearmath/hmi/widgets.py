@@ -82,9 +82,10 @@ def fact(label: str, value: str = "", unit: str = "") -> ui.label:
     """A name, its value and unit in a line of facts; returns the label of the value."""
     with ui.element("div").classes("gm-fact"):
         ui.label(label).classes("gm-name")
-        found = ui.label(value).classes("gm-value")
-        if unit:
-            ui.label(unit).classes("gm-unit")
+        with ui.element("div").classes("gm-amount"):  # they stay together where the name leaves them no room
+            found = ui.label(value).classes("gm-value")
+            if unit:
+                ui.label(unit).classes("gm-unit")
     return found
 
 

@@ -21,6 +21,7 @@ from gearmath.hmi.hobbing_job import (
     HobbingWish,
     PlanLine,
     blank_lines,
+    figure_symbol,
     firmware_zip,
     limits,
     plan_lines,
@@ -219,7 +220,7 @@ class _GearboxPage:
             rows, whole = found
             cells = [
                 [
-                    row.figure.replace("_", " "),
+                    figure_symbol(row.figure),
                     f"{row.value_um:z.2f}",
                     "–" if row.accuracy_class is None else str(row.accuracy_class),
                     "–" if row.tolerance_um is None else f"{row.tolerance_um:z.2f}",

@@ -100,6 +100,7 @@ def test_flanks_are_shown_in_space(served: Served, operator: Callable[..., Opera
             break
     assert re.fullmatch(r"(concave|convex)\s*-?\d+\.\d µm", said.text_content() or "")
     one.picture("gear_space")
+    assert one.sticks_out(800, 1280) == []
 
 
 def test_the_pair_is_shown_in_contact_on_its_measured_flanks(served: Served, operator: Callable[..., Operator]) -> None:
@@ -250,4 +251,5 @@ def test_a_job_is_planned_refused_simulated_and_its_firmware_taken(
     one.choose("Hobbing machine or lathe", "lathe_example.toml *")
     one.fill("Pitch of the thread", "8tpi")
     one.sees("3.175")
+    assert one.sticks_out(800, 1280) == []
     assert one.axe() == []
