@@ -17,7 +17,7 @@ if mood == "absent":
 print("words of its own")
 print(json.dumps({"ready": True}), flush=True)
 # the answer of an earlier run, to its second point, still stands
-run, point, answer, host, looks = 3, 0, 3_000_002, False, 0
+run, point, answer, host, looks, first = 3, 0, 3_000_002, False, 0, 1
 
 
 def status() -> dict:
@@ -26,7 +26,7 @@ def status() -> dict:
     if host and run == 3 and looks > 3:
         run, point = 4, 0
     elif run == 4 and (point == 0 or answer == 4_000_000 + point) and point < 3:
-        point += 1
+        point = point + 1 if point else first
     over = run == 4 and point == 3 and answer == 4_000_003
     return {
         "interpreter": 1 if not host or over or run == 3 else 2,
@@ -55,7 +55,9 @@ for line in sys.stdin:
     if asked["do"] == "set":
         with told.open("a") as file:
             file.write(f"{asked['signal']} {asked['value']:.0f}\n")
-        if asked["signal"] == "gearmath-host":
+        if asked["signal"] == "gearmath-first":
+            first = max(1, int(asked["value"]))
+        elif asked["signal"] == "gearmath-host":
             host = bool(asked["value"])
         elif asked["signal"] == "gearmath-acknowledged":
             answer = asked["value"]

@@ -57,6 +57,20 @@ def test_a_run_is_kept_and_every_point_is_acknowledged_with_the_number_of_its_ru
     assert told[-3:] == ["gearmath-host 0", "gearmath-first 0", "gearmath-last 0"]
 
 
+@pytest.mark.parametrize(("points", "kept"), [((2, 3), 0), ((3,), 0), ((1, 2, 3), 2)])
+def test_a_run_need_not_begin_at_the_first_point(ini: Path, tmp_path: Path, points: tuple[int, ...], kept: int) -> None:
+    """Chosen points, and a run that goes on where it was left."""
+    with MeasurementStore.open(tmp_path / "runs.db") as store:
+        run = store.begin_run(RunStart("LinuxCNC", "P.ngc", b"; P\nM2\n", COLUMNS, {k: POINTS[k] for k in points}))
+        for point in points[:kept]:
+            run.commit_touch(point, Touch(3, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0))
+        measuring = Measuring(lambda: LinuxCncControl.connect(ini, STAND_IN), run)
+        asyncio.run(asyncio.wait_for(measuring.to_the_end((points[kept], 3)), 30))
+        assert [touch.number for touch in run.touches().values()] == [3] * kept + [4] * (len(points) - kept)
+    said = [line for line in dict.fromkeys((tmp_path / "told").read_text().splitlines()) if "acknowledged" in line]
+    assert said == [f"gearmath-acknowledged {4_000_000 + k}" for k in points[kept:]]
+
+
 def test_an_answer_to_an_earlier_run_acknowledges_nothing(ini: Path) -> None:
     assert ask(ini, lambda one: one.handshake()) == Handshake(0, 3, 2, False)
 
