@@ -193,7 +193,7 @@ def test_a_correction_is_seen_before_and_after_then_rejected_with_a_note_and_acc
     none.wait_for(state="hidden")
     shown = one.panel("Correction")
     assert shown.locator("svg").count() == 4
-    assert shown.get_by_role("row").filter(has_text="RMS measured / µm").count() == 1
+    assert shown.get_by_role("row").filter(has_text="RMS measured, turned to fit / µm").count() == 1
     one.picture("correct_before_and_after")
     assert one.axe() == []
     one.fill("Note (why it is rejected)", "<img src=x onerror=alert(1)>")
