@@ -50,7 +50,7 @@ def test_what_is_accepted_cuts_what_was_expected_and_the_old_set_stays(runs: Jud
         kept = json.loads(store.run(1).results()[correcting.DECISION])
     assert kept["decision"] == "accepted"
     assert kept["files"]["set"]["sha256"] == hashlib.sha256(made.gear_set.read_bytes()).hexdigest()
-    assert past_runs(runs)[-1].files == (made.gear_set.name, made.program.name)
+    assert past_runs(runs)[-1].decided[-1].files == (made.gear_set.name, made.program.name)
 
 
 def test_a_correction_that_leaves_every_setting_and_index_changes_nothing(runs: JudgedRuns) -> None:
@@ -93,7 +93,7 @@ def test_where_no_program_can_be_written_nothing_is(
     with pytest.raises(InputError, match="out of its travel"):
         accept(runs, propose(runs.evaluated(1)), own_runs.parent)
     assert {path for path in own_runs.parent.iterdir() if path.suffix in (".toml", ".MPF")} <= before
-    assert past_runs(runs)[-1].decision == ""
+    assert past_runs(runs)[-1].decided == ()
 
 
 @pytest.mark.parametrize("name", ["../../evil.toml", "/etc/passwd", "..\\up.toml", "<b>.toml", "", "a/b_run7_2.toml"])
