@@ -98,9 +98,12 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
         return
     click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
     click.echo(
-        "thicknesses are transverse arcs: mean_ at the mean point of the pitch cone, reference_ at the middle of the"
+        "thicknesses, top lands and root widths are transverse arcs ('gearmath design' and the summary sheet have the"
     )
-    click.echo("grid of flank files, where 'gearmath evaluate' measures")
+    click.echo(
+        "normal top land): mean_ at the mean point of the pitch cone, reference_ at the middle of the grid of flank"
+    )
+    click.echo("files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
     if note:
