@@ -28,6 +28,8 @@ _ANGLES = math.radians(10), math.radians(30)
 _ROLL = 0.15, 1.0
 _HELICAL = 5.0
 _TILT = math.radians(12)
+#: Where more than this is left over the whole flank [mm], the length of the ellipse gives way if nobody asked for it.
+_LEFT = 1.5e-3
 #: Least part of the places of the gear's flank that the pinion must cut.
 _LEAST_SHARE = 0.7
 _EXTRA = {
@@ -106,6 +108,13 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
             f"pinion {name} flank: the settings for the mean point leave parts of the flank uncut; ask for less of the "
             "flank, or for a smaller transmission error"
         )
+    if fitted.rms > _LEFT and asked.yielding:
+        # path and parabola stay (26.6); the gap grows too fast towards the ends, and less of it in the middle helps
+        bounds = np.vstack([bounds, [-asked.yielding, 0.0]])
+        longer = replace(whole, extra=(*extra, local.ACROSS), bounds=bounds)
+        better = fit(longer, fitted.local, contact)
+        if better is not None and better.rms < fitted.rms:
+            whole, fitted = longer, better
     return PinionFlank(name, asked, whole, contact, fitted, float(kept.mean()))
 
 
@@ -119,7 +128,9 @@ def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
     if name in problem.extra:
         problem = _without(problem, name)
     elif name in problem.free:
-        problem = replace(problem, free=[*(one for one in problem.free if one != name), local.ACROSS])
+        problem = replace(
+            _without(problem, local.ACROSS), free=[*(one for one in problem.free if one != name), local.ACROSS]
+        )
     x[NAMES.index(name)] = value
     found = local.solve(problem.how, x, problem.wanted, problem.free)
     fitted = None if found is None else fit(problem, found, flank.contact)

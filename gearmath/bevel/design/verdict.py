@@ -14,6 +14,7 @@ from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.report import ARCSEC, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
+from gearmath.bevel.design.local_settings import ACROSS
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.grid import over_reach
@@ -232,7 +233,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
         "semi_axes_mm": {"asked_major": flank.request.semi_axis, "found": list(found.local.semi_axes)},
         "ease_off_rms_um": flank.fitted.rms * 1000,
         "share_of_flank": flank.share,
-        "bounds_reached": list(flank.fitted.active),
+        "bounds_reached": ["pattern_length" if one == ACROSS else one for one in flank.fitted.active],
     }
 
 
