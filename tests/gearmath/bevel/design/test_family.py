@@ -22,7 +22,7 @@ from gearmath.specs.toml import checked
 from tests.gearmath.bevel.design.family import mixed
 
 DRAWS = 40
-#: Whole-flank residual of pinions whose flanks are cut one by one to generated gears [um]: asked, and what is left by seed
+#: Whole-flank residual of pinions whose flanks are cut one by one to generated gears [um]: asked, what is left by seed
 #: where the settings of an untilted machine cannot do more.
 RESIDUAL, LEAST = 1.5, {39: 1.553}
 
