@@ -84,11 +84,12 @@ def tip_plane(spec: Flank, side: int, narrower: float = 0.0) -> tuple[Section, f
     """The tip plane of a blade as a section that is square to the cutter's axis, and its u where the corner is; with
     ``narrower`` [mm] so far from it.
 
-    Of a blade whose tip is at the plane of its point radius a straight one; else the lowest point of a vanishing round,
-    as the blade's plane is turned about the point radius (17.2) and that must stay.
+    Where the blade's plane is radial, or is left at its point radius, a straight one; else the lowest point of a
+    vanishing round, as the blade's plane is turned about the point radius (17.2) and that must stay.
     """
     nominal = spec.nominal
-    if spec.blade_tip_height == 0:
+    radial = not (narrower and spec.blade_offset_angle)
+    if spec.blade_tip_height == 0 and radial:
         return Section(0.0, 1.0, nominal.blade_point_radius - side * narrower, FLAT_BLADE), 0.0
     radius = tip_radius(spec, side) - side * narrower
     point = (radius, spec.blade_tip_height + CORNER, CORNER)
