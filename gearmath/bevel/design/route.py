@@ -121,7 +121,8 @@ def _at_once(
 ) -> tuple[Member, Flanks]:
     """The pinion, both flanks with the settings of one machine."""
     own = {OWN[side]: asked for side, asked in requests.items()}
-    both = rounded_completing(completing_pinion(start, own, data.pinion.may_change, backlash), data.shop)
+    found_for_both = completing_pinion(start, own, data.pinion.may_change, backlash).centered()
+    both = rounded_completing(found_for_both, data.shop)
     flanks = {side: both.flank(name) for side, name in OWN.items()}
     values = start.model_dump()
     for flank in flanks.values():
