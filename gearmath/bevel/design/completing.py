@@ -23,7 +23,7 @@ from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn, turned
-from gearmath.errors import ComputationError
+from gearmath.errors import ComputationError, InputError
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member
 
 #: Bounds of settings that the fit may move: pressure angles [rad], tilt [rad], 2C and 6D, motion of the
@@ -154,10 +154,10 @@ def completing_pinion(
     best = best_way(start, problem, {flank: requests[flank].inner for flank in FLANKS}, found)
     lost = min(best.shares, key=lambda flank: best.shares[flank])
     if not best.shares[lost] >= LEAST_SHARE:
-        raise ComputationError(
-            f"pinion {lost} flank: settings for the mean point were found, but they cut only {best.shares[lost]:.0%} "
-            f"of the places that its mate needs, which must be at least {LEAST_SHARE:.0%}: the others lie below the "
-            "tip of the blade or are undercut"
+        raise InputError(
+            f"{requests[lost].side}: {requests[lost].words}: settings of the pinion's {lost} flank were found for the "
+            f"mean point, but they cut only {best.shares[lost]:.0%} of the places that its mate needs, which must be "
+            f"at least {LEAST_SHARE:.0%}: the others lie below the tip of the blade or are undercut"
         )
     if best.fitted is None:
         raise ComputationError(

@@ -36,7 +36,8 @@ class Request:
     ``own_path`` on the pinion [rad]; ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm];
     ``roll`` of chapter 26; ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the pinion's tip
     reaches; ``inner`` (n,) are those about the middle. ``yielding`` is what the curvature across the path may lose
-    [1/mm] where the whole flank needs it: nothing if the length of the ellipse is asked for.
+    [1/mm] where the whole flank needs it: nothing if the length of the ellipse is asked for. ``words`` are the keys of
+    what is asked.
     """
 
     side: str
@@ -53,6 +54,7 @@ class Request:
     gap: np.ndarray
     inner: np.ndarray
     yielding: float
+    words: str
 
 
 def request(
@@ -110,7 +112,24 @@ def request(
         gap,
         inner,
         yielding,
+        _words(asked, path),
     )
+
+
+def _words(asked: ContactRequest, path: float) -> str:
+    """The keys of what is asked of a side, with their values."""
+    names = ["lengthwise_crowning", "profile_crowning", "bias"]
+    given = {name: getattr(asked, name) for name in names}
+    if asked.lengthwise_crowning is None:
+        given = {
+            "transmission_error": asked.transmission_error,
+            "path_angle": math.degrees(path),
+            "pattern_length": asked.pattern_length,
+        }
+    said = [f"{name} = {value:.6g}" for name, value in given.items()]
+    if asked.position is not None:
+        said.append(f"position = [{asked.position[0]:g}, {asked.position[1]:g}]")
+    return ", ".join(said)
 
 
 def _yielding(

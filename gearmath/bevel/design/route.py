@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearmath.bevel.blank import BevelBlank
+from gearmath.bevel.check_blade import check_edge
 from gearmath.bevel.check_blank import check_blank
 from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
@@ -13,7 +14,7 @@ from gearmath.bevel.crown_gear import Method, crown_gear_set
 from gearmath.bevel.design.backlash import completing_backlash, with_backlash
 from gearmath.bevel.design.completing import completing_pinion
 from gearmath.bevel.design.designed_flank import DesignedFlank
-from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_table, with_flank
+from gearmath.bevel.design.pinion import FLATTEST, PinionFlank, pinion_flank, settings_table, with_flank
 from gearmath.bevel.design.point_widths import with_point_widths
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
@@ -65,12 +66,7 @@ def design(
             "cut at once"
         )
     blank_data, blank = blank_for(data, name, teeth)
-    start = crown_gear_set(
-        blank_data,
-        Method("completing", alternating=True) if completing else _single(data, blank),
-        Method("completing", data.gear.generation, alternating=True),
-        data.hand,
-    )
+    start = _crown_gear(data, blank_data, blank)
     for member in ("pinion", "gear"):
         check_blank(start.member(member), member)  # before anything is computed for it
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
@@ -79,6 +75,11 @@ def design(
         member: edge_radius(given_edges[member], own, blank.clearance)
         for member, own in (("pinion", slots.pinion), ("gear", slots.wheel))
     }
+    # the fit may still make the blades of the pinion as flat as that
+    check_edge("pinion", rounds["pinion"], FLATTEST, blank.clearance)
+    if given is None:
+        flattest = max(start.member("gear").flank(flank).alpha for flank in FLANKS)
+        check_edge("gear", rounds["gear"], flattest, blank.clearance)
     pinion, gear = (with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
     gear = rounded_gear(gear, data.shop)
     if gear.process == "face_hobbing" and data.gear.blade_edge_radius is None:
@@ -95,6 +96,25 @@ def design(
         found, flanks = _one_by_one(data, requests, pinion, gear, backlash)
     pair = start.model_copy(update={"pinion": found, "gear": gear})
     return Designed(data, pair, flanks, backlash, blank_data)
+
+
+def _crown_gear(data: DesignData, blank_data: BlankData, blank: BevelBlank) -> BevelSet:
+    """The pair of the crown gear. Raises InputError with the key of the data from which a setting follows that is
+    beyond what a set may have."""
+    try:
+        return crown_gear_set(
+            blank_data,
+            _single(data, blank) if data.pinion.cutting == "fixed_setting" else Method("completing", alternating=True),
+            Method("completing", data.gear.generation, alternating=True),
+            data.hand,
+        )
+    except InputError as error:
+        said = str(error)
+        if "blade_point_radius" in said:
+            raise InputError(f"cutter.cutter_radius = {blank_data.cutter.cutter_radius:g}: {said}") from error
+        if ("blade_pressure_angle" in said or said.startswith("tilt")) and data.pinion.cutter_tilt:
+            raise InputError(f"pinion.cutter_tilt = {data.pinion.cutter_tilt:g}: {said}") from error
+        raise
 
 
 def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float, along: float) -> Request:

@@ -95,13 +95,15 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
 
     Raises InputError with the limit that is broken: the pair is none, runs on edges, or has too thin a tooth.
     """
+    stepped = any(made.data.shop.model_dump().values())
     try:
         check_pair(made.pair)
     except InputError as error:
         said = re.sub(r"; (no single setting|the setting that alone).*", "", str(error))
+        finer = "finer steps in [shop], " * stepped
         raise InputError(
-            f"the pair that was found is refused: {said}; another mean_addendum_factor, thickness_factor, pressure "
-            "angle, cutter_radius or method of the gear is needed"
+            f"the pair that was found is refused: {said}; {finer}another mean_addendum_factor, thickness_factor, "
+            "pressure angle, cutter_radius or method of the gear is needed"
         ) from error
     runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
     pinion, gear = made.pair.member("pinion"), made.pair.member("gear")
@@ -129,7 +131,6 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         "undercut_mm": cuts,
         "root_ridge_um": {name: 1000 * one if math.isfinite(one) else None for name, one in ridges.items()},
     }
-    stepped = any(made.data.shop.model_dump().values())
     for side, run in runs.items():
         figures[side] = _side(made, side, run, stepped)
     return figures, runs
@@ -190,7 +191,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             "position must be given, or the path come nearer to 90 degrees"
         )
     if run.outcome != "interior contact" or found is None:
-        changes = (
+        changes: tuple[str, ...] = (
             (
                 f"a smaller profile_crowning (now {asked.profile_crowning:g} um)",
                 f"another bias (now {asked.bias:g} um)",
@@ -202,7 +203,10 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
                 f"a smaller transmission_error (now {asked.transmission_error:g} arcsec)",
                 f"a shorter pattern_length (now {asked.pattern_length:g})",
             )
-        ) + ("finer steps in [shop]",) * stepped
+        )
+        if asked.position is not None:
+            changes += (f"a position nearer to the middle (now {asked.position[0]:g}, {asked.position[1]:g})",)
+        changes += ("finer steps in [shop]",) * stepped
         raise EdgeContact(
             f"{side}: {run.outcome}: one pair of teeth does not take over from the next within the flanks, where the "
             f"contact ratio is {run.contact_ratio:.3g}: {', '.join(changes[:-1])} or {changes[-1]} is needed"
