@@ -21,6 +21,7 @@ from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rou
 from gearmath.bevel.design.start import USUAL, Teeth, blank_for, edge_radius
 from gearmath.bevel.design.tip_edges import with_edge, with_room_for_tips
 from gearmath.bevel.design.tip_heights import with_tip_heights
+from gearmath.bevel.pair import check_computed
 from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
@@ -89,6 +90,8 @@ def design(
         pinion, gear = pinion.model_copy(update={"blank": given.member("pinion").blank}), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
+    else:
+        _check_gear(start, gear)
     requests = {side: _asked(data, side, pinion, gear, start.shaft_angle, along) for side in OWN}
     if completing:
         found, flanks = _at_once(data, requests, pinion, gear, backlash)
@@ -115,6 +118,17 @@ def _crown_gear(data: DesignData, blank_data: BlankData, blank: BevelBlank) -> B
         if ("blade_pressure_angle" in said or said.startswith("tilt")) and data.pinion.cutter_tilt:
             raise InputError(f"pinion.cutter_tilt = {data.pinion.cutter_tilt:g}: {said}") from error
         raise
+
+
+def _check_gear(start: BevelSet, gear: Member) -> None:
+    """Refuse a gear that is no member of a pair before a pinion is sought for it."""
+    try:
+        check_computed(start.model_copy(update={"pinion": None, "gear": gear}))
+    except InputError as error:
+        raise InputError(
+            f"the gear that was found is refused: {error}; another mean_addendum_factor, thickness_factor, pressure "
+            "angle, cutter_radius or generation of the gear is needed"
+        ) from error
 
 
 def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float, along: float) -> Request:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +17,7 @@ from gearmath.bevel.design.local_settings import ACROSS
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.grid import over_reach
-from gearmath.bevel.pair import check_pair
+from gearmath.bevel.pair import check_computed
 from gearmath.bevel.ridge import ridge
 from gearmath.bevel.tooth import mean_backlash, space_widths, tooth_space
 from gearmath.errors import InputError
@@ -97,15 +96,13 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
     """
     stepped = any(made.data.shop.model_dump().values())
     try:
-        check_pair(made.pair)
+        check_computed(made.pair)
     except InputError as error:
-        said = re.sub(r"; (no single setting|the setting that alone).*", "", str(error))
         finer = "finer steps in [shop], " * stepped
         raise InputError(
-            f"the pair that was found is refused: {said}; {finer}another mean_addendum_factor, thickness_factor, "
+            f"the pair that was found is refused: {error}; {finer}another mean_addendum_factor, thickness_factor, "
             "pressure angle, cutter_radius or method of the gear is needed"
         ) from error
-    runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
     pinion, gear = made.pair.member("pinion"), made.pair.member("gear")
     module = mean_module(made)
     lands = {name: top_land(member, name) for name, member in (("pinion", pinion), ("gear", gear))}
@@ -131,6 +128,7 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         "undercut_mm": cuts,
         "root_ridge_um": {name: 1000 * one if math.isfinite(one) else None for name, one in ridges.items()},
     }
+    runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
     for side, run in runs.items():
         figures[side] = _side(made, side, run, stepped)
     return figures, runs
