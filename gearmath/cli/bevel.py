@@ -91,7 +91,7 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     one = member_of(pair, member)
     with about(pair.source):
         made = one.tooth(columns)
-        mates, note = pair.mates(), pair.edge_note()
+        mates, notes = pair.mates(), [made.note, pair.edge_note()]
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures
     if as_json:
         echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))
@@ -106,7 +106,7 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     click.echo("files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
-    if note:
+    for note in filter(None, notes):
         click.echo(f"note: {note}")
     click.echo(f"{target}: {triangles} triangles")
 

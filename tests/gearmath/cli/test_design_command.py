@@ -97,6 +97,12 @@ def test_text_says_what_was_asked_and_found(command, written, tmp_path):
         ("", "76.2", "[coast]\npath_angle = 50.0\n", r"coast: edge contact.*path_angle, now 50"),
         ("", "76.2", "[coast]\npath_angle = 5.0\n", r"coast\.path_angle = 5.*at least 15"),
         ("face_widht = 3", "76.2", "", r"face_widht"),
+        ("", "76.2", "[pinion]\nblade_edge_radius = 5.0\n", r"pinion\.blade_edge_radius = 5: .* it must be at most \d"),
+        ("", "76.2", "[gear]\nblade_edge_radius = 5.0\n", r"gear\.blade_edge_radius = 5: .* it must be at most \d"),
+        ("", "76.2", "[gear]\nblade_edge_radius = 1e-9\n", r"blade_edge_radius = 1e-09: must be 0, .* at least 0\.001"),
+        ("", "76.2", "[pinion]\ncutter_tilt = -30.0\n", r"pinion\.cutter_tilt = -30: .*must be at least 3"),
+        ("", "500.0", "", r"cutter\.cutter_radius = 500: .*must be at most 500"),
+        ("", "76.2", "[drive]\npattern_length = 0.1\n", r"drive: .*pattern_length = 0\.1: .* must be at least 70%"),
         (
             "",
             '76.2\nprocess = "face_hobbing"\nblade_groups = 9',
