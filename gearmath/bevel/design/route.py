@@ -31,7 +31,6 @@ from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
 
 #: Face widths are the same within this, for sheets in inches are rounded.
-_SAME_WIDTH = 1e-3
 
 Flanks = dict[str, PinionFlank | DesignedFlank]
 
@@ -86,7 +85,6 @@ def design(
     if gear.process == "face_hobbing" and data.gear.blade_edge_radius is None:
         gear = with_room_for_tips(gear)
     if given is not None:
-        _check_of(given, pinion, gear, name)
         pinion, gear = pinion.model_copy(update={"blank": given.member("pinion").blank}), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
@@ -182,20 +180,3 @@ def _tilt(data: DesignData, blank: BevelBlank) -> float:
     if data.pinion.cutter_tilt is not None:
         return data.pinion.rad("cutter_tilt")
     return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
-
-
-def _check_of(given: BevelSet, pinion: Member, gear: Member, name: str) -> None:
-    """Raises InputError where the data, of which the crown gear's members are, say something else than a given set."""
-    set_pinion, set_gear = given.member("pinion"), given.member("gear")
-    for key, of_data, of_set in (
-        ("pinion_teeth", pinion.teeth, set_pinion.teeth),
-        ("wheel_teeth", gear.teeth, set_gear.teeth),
-        ("hand", pinion.hand, set_pinion.hand),
-        ("cutter.process", gear.process, set_gear.process),
-        ("gear.generation", gear.generation, set_gear.generation),
-    ):
-        if of_data != of_set:
-            raise InputError(f"{name}: {key} = {of_data!r}: must be {of_set!r}, as the set has it")
-    width, set_width = pinion.blank.face_width, set_pinion.blank.face_width
-    if not math.isclose(width, set_width, rel_tol=_SAME_WIDTH):
-        raise InputError(f"{name}: face_width of {width:g} mm: must be {set_width:g} mm, as the set has it")

@@ -139,6 +139,20 @@ def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, m
             ("[cutter]", '[pinion]\ncutting = "completing"\n[cutter]\nprocess = "face_hobbing"\nblade_groups = 11'),
             "cutter.process = 'face_hobbing': must be 'face_milling'",
         ),
+        # 2 x 93.75 mm x sin(71.565 degrees)/36; the cutter is of 6 inches
+        ("nasa_tp3096_12x36.toml", ("4.96", "4.90"), "outer_transverse_module of 4.9 mm: must be 4.94"),
+        ("nasa_tp3096_12x36.toml", ("4.96", "4.941\nshaft_angle = 80"), "shaft_angle = 80: must be 90"),
+        (
+            "nasa_tp3096_12x36.toml",
+            ("4.96", "4.941\nmean_spiral_angle = 30"),
+            "mean_spiral_angle = 30 degrees: must be 34.9",
+        ),
+        (
+            "nasa_tp3096_12x36.toml",
+            ("4.96", "4.941\npressure_angle_coast = 25"),
+            "pressure_angle_coast = 25 degrees: must",
+        ),
+        ("nasa_tp3096_12x36.toml", ("4.96", "4.941"), "cutter.cutter_radius of 57.15 mm: must be 76.2"),
     ],
 )
 def test_gear_of_another_pair_is_refused(refused, written, tmp_path, of_set, other, sentence):
@@ -146,6 +160,8 @@ def test_gear_of_another_pair_is_refused(refused, written, tmp_path, of_set, oth
     path = written()
     if other:
         path.write_text(path.read_text("utf-8").replace(*other), "utf-8")
+    if "cutter_radius" in sentence:
+        path.write_text(path.read_text("utf-8").replace("= 76.2", "= 57.15"), "utf-8")
     refused(re.escape(sentence), "design", path, "--from", of_set, "-o", tmp_path / "s")
 
 
