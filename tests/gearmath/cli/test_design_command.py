@@ -149,8 +149,8 @@ def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, m
         ),
         (
             "nasa_tp3096_12x36.toml",
-            ("4.96", "4.941\npressure_angle_coast = 25"),
-            "pressure_angle_coast = 25 degrees: must",
+            ("4.96", "4.941\npressure_angle_drive = 25"),
+            "pressure_angle_drive = 25 degrees: must",
         ),
         ("nasa_tp3096_12x36.toml", ("4.96", "4.941"), "cutter.cutter_radius of 57.15 mm: must be 76.2"),
     ],
