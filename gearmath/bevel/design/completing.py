@@ -121,7 +121,8 @@ def completing_pinion(
 ) -> CompletingPinion:
     """Both flanks from those of the crown gear, ``start``; ``requests`` by flank, ``backlash`` transverse [mm].
 
-    Raises ComputationError where no settings of one machine give both sides what is asked for.
+    Raises ComputationError where no settings of one machine give both sides what is asked for, InputError where they
+    leave places uncut.
     """
     hows = {flank: generation_of(start, flank) for flank in FLANKS}
     turns = _turns(start, requests, backlash)

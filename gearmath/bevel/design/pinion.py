@@ -64,7 +64,7 @@ class PinionFlank:
 def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]) -> PinionFlank:
     """The flank of the pinion from that of the crown gear, ``start``.
 
-    Raises ComputationError where the settings cannot be followed that far.
+    Raises ComputationError where the settings cannot be followed that far, InputError where they leave places uncut.
     """
     how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
     x, begin = _crown_gear(start, how, section, asked)
@@ -105,9 +105,9 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     whole = problem(kept)
     fitted = fit(whole, near, contact)
     if fitted is None:
-        raise ComputationError(
+        raise InputError(
             f"{asked.side}: {asked.words}: the settings for the mean point leave parts of the pinion's {name} flank "
-            "uncut; ask for less of the flank, or for a smaller transmission error"
+            "uncut, where none may be; ask for less of the flank, or for a smaller transmission error"
         )
     if fitted.rms > _LEFT and asked.yielding:
         # path and parabola stay (26.6); the gap grows too fast towards the ends, and less of it in the middle helps
