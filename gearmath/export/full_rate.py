@@ -62,7 +62,7 @@ def _overtaking(machine: HobbingMachine, per_count: Fraction, rpm: float) -> tup
 def _overtakes(machine: HobbingMachine, per_count: Fraction, rpm: float) -> str:
     highest, rate, seconds = _overtaking(machine, per_count, rpm)
     return (
-        f"the motor speeds up by itself to {highest:.0f} steps/s, of `step_rate_hz = {machine.max_step_rate}`, "
+        f"the motor speeds up by itself to about {highest:.0f} steps/s, of `step_rate_hz = {machine.max_step_rate}`, "
         f"overtakes what it has missed, and `In phase` comes after about {math.ceil(seconds)} s, with {rate:.0f} "
         "steps/s."
     )
