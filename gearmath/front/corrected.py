@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
 from gearmath.bevel.identify.variables import reading
 from gearmath.bevel.pair import check_corrected
 from gearmath.errors import ComputationError, about
-from gearmath.front.measured import Evaluation, Measurement
+from gearmath.front.measured import Evaluation, Measurement, measurement_in
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, load_set
@@ -79,6 +80,7 @@ class Correction:
         """The member with the corrected settings; its nominal flanks stay what they were."""
         return self.gear_set.member(self.measurement.member.name)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the corrected set as TOML, the nominal settings under ``design``. Raises ComputationError for no pair.
 
@@ -144,6 +146,7 @@ class Correction:
         return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
 
 
+@checked_call
 def compensate(
     measured: Measurement,
     settings: str | Sequence[str] = "few",
@@ -155,14 +158,14 @@ def compensate(
     bounds: Bounds = "machine",
     root_limit: float = ROOT_LIMIT,
     noise_um: float | None = None,
-    mate: Measurement | None = None,
+    mate: Measurement | str | Path | None = None,
     thickness: float = 0.0,
     thickness_by: By = "work_rotation_offset",
     begin: Begin = silent,
 ) -> Correction:
     """Corrected settings of what was measured; see :meth:`Measurement.compensate`."""
     member, name = measured.member.spec, measured.member.name
-    moved = None if mate is None else _moved(measured, mate, registered)
+    moved = None if mate is None else _moved(measured, measurement_in(mate, measured.member.gear_set), registered)
     progress = begin(STAGES + correcting.STAGES, "stage")
     evaluation = measured.evaluate(registered, rotated, progress)
     found = evaluation.found

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
 from gearmath.front.tables import html_table
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 
@@ -36,11 +37,13 @@ class FlankSurface:
         point, normal = (values.reshape(rows, columns, 3) for values in (file.point, file.normal))
         return cls(member, flank, point, normal, file)
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""
         write_flank_csv(Path(path), self.file)
         return Path(path)
 
+    @checked_call
     def to_text(self, path: str | Path) -> Path:
         """Write points and normals as plain text for other programs, a row ``x y z i j k`` each [mm]."""
         from gearmath.exchange.point_lines import write_points
@@ -75,6 +78,7 @@ class Tooth:
     space: ToothSpace
     figures: dict[str, float]
 
+    @checked_call
     def to_stl(self, path: str | Path, whole_member: bool = True) -> int:
         """Write the closed solid of the member, or the surface of one space, as binary STL in mm; its triangles."""
         from gearmath.bevel.solid import member_triangles, space_triangles, write_stl

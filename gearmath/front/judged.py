@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Place
 from gearmath.errors import InputError, about
 from gearmath.front.corrected import effects_um
 from gearmath.front.measured import Evaluation, Measurement
@@ -77,6 +79,7 @@ class Uncertainty:
         return html_table(f"uncertainties from {self.source}", names, rows)
 
 
+@checked_call(machine=Place(), probe=Place())
 def uncertainty(
     measured: Measurement,
     sigma_um: float | None = None,
