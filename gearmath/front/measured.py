@@ -18,6 +18,7 @@ from gearmath.front.member import Member
 from gearmath.front.progress import Progress, unheard
 from gearmath.front.sets import GearSet, set_of
 from gearmath.front.tables import html_table
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.quality.uncertainty.corrected import point_covariance
@@ -198,11 +199,16 @@ def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measu
 
 @checked_call(member=Either((MEMBER, SET), "must be a member, a gear set, or the file of a set"))
 def load_measurement(path: str | Path, member: Member | GearSet | str | Path) -> Measurement:
-    """Read a measured flank CSV of a member, or of the member of a set that the file names. Raises InputError."""
+    """Read a measured flank CSV of a member, or of the member of a set that the file names.
+
+    Raises InputError, also where it was measured against other nominal flanks.
+    """
     file = read_flank_csv(Path(path))
     one = member if isinstance(member, Member) else set_of(member).member(file.member)
     if file.member != one.name:
         raise InputError(f"{path}: member = {file.member}: the measurement of the {one.name} is wanted")
+    with about(Path(path)):
+        check_belongs(one.spec, one.name, file)
     return Measurement(one, file, Path(path))
 
 
