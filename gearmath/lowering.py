@@ -14,6 +14,7 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derivations.expression import Expression
+from gearmath.arguments.call import checked_call
 from gearmath.engine.kernel import Kernel
 
 
@@ -54,6 +55,7 @@ RULES: Mapping[type, Callable] = {
 }
 
 
+@checked_call
 def lower(expression: Expression) -> Kernel:
     """The CasADi function of an expression, with the same names, shapes, units and description.
 

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, overload
 
 from gearmath.arguments.kinds import Kind
 from gearmath.arguments.known import KNOWN
-from gearmath.errors import InputError
+from gearmath.errors import CallError, InputError
 
 F = TypeVar("F", bound=Callable[..., Any])
 _SELF = ("self", "cls")
@@ -54,7 +54,7 @@ def _wrapped(function: Callable[..., Any], called: str, own: Mapping[str, Kind])
         try:
             bound = signature.bind(*arguments, **options).arguments
         except TypeError as error:
-            raise InputError(_misuse(called, signature, options, str(error))) from None
+            raise CallError(_misuse(called, signature, options, str(error))) from None
         for name, value in bound.items():
             if name in _SELF or (value is None and name in optional):
                 continue

@@ -70,7 +70,7 @@ class Whole(Plain):
 
 @dataclass(frozen=True)
 class Number(Plain):
-    """A finite number, within limits where the work itself does not say them.
+    """A number, within limits where the work itself does not say them; that says of nan, too, what is not ``finite``.
 
     A limit is none of its values where it must be ``above`` or ``below`` it.
     """
@@ -80,18 +80,23 @@ class Number(Plain):
     unit: str = ""
     above: bool = False
     below: bool = False
+    finite: bool = True
 
     @property
     def words(self) -> str:  # type: ignore[override]
         if self.low == -math.inf:
-            return "must be a finite number" + (f" of {self.unit}" if self.unit else "")
+            return f"must be a {'finite ' * self.finite}number" + (f" of {self.unit}" if self.unit else "")
         least = f"be {'greater than' if self.above else 'at least'} {self.low:g}"
         most = f"{'less than' if self.below else 'at most'} {self.high:g}"
         said = f"{least} and {most}" if self.above or self.below else f"lie between {self.low:g} and {self.high:g}"
         return f"must {least if self.high == math.inf else said} {self.unit}".rstrip()
 
     def fits(self, value: Any) -> bool:
-        if not isinstance(value, Real) or is_truth(value) or not math.isfinite(value):
+        if not isinstance(value, Real) or is_truth(value):
+            return False
+        if not self.finite:
+            return True
+        if not math.isfinite(value):
             return False
         value = float(value)
         if (self.above and value == self.low) or (self.below and value == self.high):
@@ -152,6 +157,13 @@ class Place(Plain):
 
     def fits(self, value: Any) -> bool:
         return isinstance(value, str | os.PathLike) and os.fspath(value) != "" and "\0" not in str(value)
+
+    def refusal(self, name: str, value: object) -> str | None:
+        return (
+            stated(name, value, "a file must be named, its name is empty")
+            if value == ""
+            else super().refusal(name, value)
+        )
 
 
 @dataclass(frozen=True)
@@ -241,12 +253,59 @@ class Each:
 
 @dataclass(frozen=True)
 class Keyed(Plain):
-    """A table by keys, whose content is checked where it is used."""
+    """A table by keys, of so many at least; keys and values are of their kinds where these are given."""
 
+    words: str
+    key: Kind | None = None
+    value: Kind | None = None
+    least: int = 0
+
+    def fits(self, value: Any) -> bool:
+        if not isinstance(value, Mapping) or len(value) < self.least:
+            return False
+        pairs = ((self.key, value), (self.value, value.values()))
+        return all(kind is None or kind.refusal("", one) is None for kind, ones in pairs for one in ones)
+
+
+@dataclass(frozen=True)
+class Columns(Plain):
+    """So many columns of numbers, all equally long and not empty."""
+
+    count: int
     words: str
 
     def fits(self, value: Any) -> bool:
-        return isinstance(value, Mapping)
+        if not isinstance(value, Sequence) or len(value) != self.count:
+            return False
+        if any(Each(Number(), "", 1).refusal("", column) for column in value):
+            return False
+        return len({len(column) for column in value}) == 1
+
+
+@dataclass(frozen=True)
+class Pair(Plain):
+    """Two values, each of its kind."""
+
+    first: Kind
+    second: Kind
+    words: str
+
+    def fits(self, value: Any) -> bool:
+        kinds = self.first, self.second
+        if not isinstance(value, tuple) or len(value) != len(kinds):
+            return False
+        return all(kind.refusal("", one) is None for kind, one in zip(kinds, value, strict=True))
+
+
+@dataclass(frozen=True)
+class Having(Plain):
+    """Whatever has a method of this name."""
+
+    method: str
+    words: str
+
+    def fits(self, value: Any) -> bool:
+        return callable(getattr(value, self.method, None))
 
 
 class Anything(Plain):

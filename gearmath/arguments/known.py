@@ -5,19 +5,19 @@ Limits that depend on member, machine or job are not here: they are told where t
 
 from __future__ import annotations
 
-from typing import Any
-
 from gearmath.arguments.kinds import (
-    Anything,
     Called,
+    Columns,
     Content,
     Each,
     Either,
     Grid,
+    Having,
     Keyed,
     Kind,
     Number,
     OneOf,
+    Pair,
     Place,
     Record,
     Text,
@@ -28,8 +28,8 @@ from gearmath.arguments.kinds import (
 #: Touches of one point, and points of a grid; so much an assembly may be off [mm, degrees].
 MOST_TOUCHES, MOST_POINTS = 100, 1_000_000
 MOST_MM, MOST_DEG = 50.0, 10.0
-#: Edges that a simulation can have, and the last count that it can begin at.
-MOST_EDGES, LAST_START = 10**12, 2**62
+#: Steps [degrees of the pinion] that a path of contact may be told in.
+LEAST_STEP, MOST_STEP = 0.01, 15.0
 
 _RULES = ("exact", "ideal", "float")
 _FILE = Place()
@@ -52,8 +52,8 @@ HOBBER = _or_file("gearmath.specs.hobbing", "HobbingMachine", "a hobbing machine
 KERNEL = Record("gearmath.engine.kernel", "Kernel", "a kernel")
 EXPRESSION = Record("derivations.expression", "Expression", "an Expression")
 _FLANKS = ("concave", "convex")
+_FLANK = OneOf(_FLANKS, f"must be {' or '.join(_FLANKS)}")
 _SETTINGS = Keyed("must be settings by their names, such as {'radial_distance': 0.05}")
-_HEIGHT = Each(Number(unit="mm"), "must be a list of numbers of mm")
 
 KNOWN: dict[str, Kind] = {
     # files and folders, texts
@@ -73,7 +73,7 @@ KNOWN: dict[str, Kind] = {
     "shop": SHOP,
     "expression": EXPRESSION,
     # flanks and their settings
-    "flank": OneOf(_FLANKS, f"must be {' or '.join(_FLANKS)}"),
+    "flank": _FLANK,
     **dict.fromkeys(_FLANKS, _SETTINGS),
     "grid": Grid(MOST_POINTS),
     "margin": Either(
@@ -81,7 +81,7 @@ KNOWN: dict[str, Kind] = {
         "must be at least 0 and less than 0.5, or Margins",
     ),
     "places": Either(
-        (_FILE, Each(_HEIGHT, "", 2, 2)), "must be z_w and radius of each point [mm], or a file of such lines"
+        (_FILE, Columns(2, "")), "must be z_w and radius of each point [mm], as many of both, or a file of such lines"
     ),
     "columns": Whole(3, 400),
     "whole_member": Truth(),
@@ -91,12 +91,13 @@ KNOWN: dict[str, Kind] = {
     "sides": Each(
         OneOf(("drive", "coast"), "must be of drive, coast"), "must be a list of sides, such as ('drive',)", 1
     ),
-    "step": Number(0.01, 15.0, "degrees"),
+    "step": Number(LEAST_STEP, MOST_STEP, "degrees"),
     # programs
     "control": Text("must be the name of a control, such as 'sinumerik' or 'linuxcnc'"),
     "spaces": Each(Whole(), "must be a list of tooth spaces, such as [0]"),
-    **dict.fromkeys(("tolerance", "flank_tolerance", "roughing_stock", "finishing_stock"), Number(unit="mm")),
-    "feed": Number(unit="mm/min"),
+    **dict.fromkeys(("tolerance", "roughing_stock", "finishing_stock"), Number(unit="mm", finite=False)),
+    **dict.fromkeys(("report_tolerance", "flank_tolerance"), Number(1e-5, 1.0, "mm")),
+    "feed": Number(unit="mm/min", finite=False),
     "spindle_rpm": Number(unit="1/min"),
     "dry_run": Truth(),
     "blocks": OneOf(("g1", "poly")),
@@ -104,7 +105,7 @@ KNOWN: dict[str, Kind] = {
     "topography": Each(Whole(), "must be a list of teeth, such as (0,)"),
     **dict.fromkeys(("registration", "lobing"), Truth()),
     "repeat": Whole(1, MOST_TOUCHES),
-    "number": Whole(1),
+    "number": Whole(1, 99_999),
     "run": Whole(1),
     # measurements and their correction
     **dict.fromkeys(("registered", "rotated", "higher_order", "advance", "leave_out"), Truth()),
@@ -122,11 +123,13 @@ KNOWN: dict[str, Kind] = {
     "draws": Whole(1000, 10_000_000),
     "seed": Whole(0),
     "workers": Whole(1, 1024),
-    "executor": Anything(),
+    "executor": Having("submit", "must be an Executor, which has submit"),
     "unit": OneOf(("mm", "inch")),
     "frame": Record("gearmath.quality.foreign.points", "Frame", "a Frame"),
     "phase": OneOf(("common", "each", "kept")),
-    "paths": Keyed("must be files by flank and tooth, such as {('concave', 0): 'points.txt'}"),
+    "paths": Keyed(
+        "must be files by flank and tooth, such as {('concave', 0): 'points.txt'}", Pair(_FLANK, Whole(0), ""), _FILE, 1
+    ),
     # the electronic gearbox
     **dict.fromkeys(("teeth", "starts", "wanted"), Whole()),
     "pitch": Text("must be a pitch like '1.25mm' or '8tpi'"),
@@ -135,7 +138,7 @@ KNOWN: dict[str, Kind] = {
     "cut": OneOf(("climb", "conventional")),
     "climb": Truth(),
     "helix": Number(unit="degrees"),
-    **dict.fromkeys(("rpm", "run_up", "shift", "pin"), Number()),
+    **dict.fromkeys(("rpm", "run_up", "shift", "pin"), Number(finite=False)),
     "module": Number(0.1, 25.0, "mm"),
     "face_width": Number(1.0, 1000.0, "mm"),
     "hob_shift": Number(-500.0, 500.0, "mm"),
@@ -143,25 +146,10 @@ KNOWN: dict[str, Kind] = {
     "length": Number(1.0, 3000.0, "mm"),
     **dict.fromkeys(("rule", "compare"), OneOf(_RULES)),
     "pattern": OneOf(("forward", "dither", "reversals")),
-    "edges": Whole(1, MOST_EDGES),
-    "start": Whole(0, LAST_START),
+    **dict.fromkeys(("edges", "start"), Whole()),
     "trace": Record("gearmath.gearbox.simulation", "Trace", "a Trace"),
     # C
     "bits": OneOf((0, 32, 64)),
     # progress
     **dict.fromkeys(("begin", "progress", "say"), _WORK),
 }
-
-
-def choices(name: str) -> list[Any]:
-    """The words that an argument may be."""
-    kind = KNOWN[name]
-    assert isinstance(kind, OneOf)
-    return list(kind.choices)
-
-
-def limits(name: str) -> tuple[Any, Any]:
-    """The least and the largest number that an argument may be; None where there is none."""
-    kind = KNOWN[name]
-    assert isinstance(kind, Whole | Number)
-    return kind.low, kind.high

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from gearmath.arguments.call import checked_call
-from gearmath.bevel.identify.variables import reading
+from gearmath.bevel.identify.variables import NAMES, reading, variables_of
 from gearmath.bevel.pair import check_corrected
-from gearmath.errors import ComputationError, about
+from gearmath.errors import ComputationError, InputError, about
 from gearmath.front.measured import Evaluation, Measurement, measurement_in
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
@@ -29,7 +29,7 @@ from gearmath.quality.evaluation.member import STAGES
 from gearmath.quality.uncertainty.corrected import noise_of_points, point_covariance
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
-from gearmath.specs.bevel_set import MACHINE_SETTINGS
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
 from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
@@ -165,7 +165,12 @@ def compensate(
 ) -> Correction:
     """Corrected settings of what was measured; see :meth:`Measurement.compensate`."""
     member, name = measured.member.spec, measured.member.name
-    moved = None if mate is None else _moved(measured, measurement_in(mate, measured.member.gear_set), registered)
+    chosen, moved = _free(settings), None
+    if mate is not None:
+        other = measurement_in(mate, measured.member.gear_set)
+        if other.member.name == name:
+            raise InputError(f"mate: is a measurement of the {name} too: that of the other member is wanted")
+        moved = _moved(measured, other, registered)
     progress = begin(STAGES + correcting.STAGES, "stage")
     evaluation = measured.evaluate(registered, rotated, progress)
     found = evaluation.found
@@ -175,7 +180,7 @@ def compensate(
             member,
             name,
             found.file,
-            _free(settings),
+            chosen,
             objective=objective,
             higher_order=higher_order,
             few=settings == "few",
@@ -199,10 +204,20 @@ def _moved(measured: Measurement, mate: Measurement, registered: bool) -> dict[s
         return moved_to_mate(measured.member.gear_set.spec, mate.member.name, found.file, measured.file)
 
 
+#: Names of several settings; None where they suit the cutting method.
+_CHOICES = {"few": None, "standard": None, "all": MACHINE_SETTINGS}
+
+
 def _free(settings: str | Sequence[str]) -> tuple[str, ...] | None:
     """The settings that may change; None for those that suit the cutting method."""
     if isinstance(settings, str):
-        return None if settings in ("few", "standard") else MACHINE_SETTINGS if settings == "all" else (settings,)
+        if settings in _CHOICES:
+            return _CHOICES[settings]
+        if settings not in NAMES:
+            known = ", ".join((*_CHOICES, *SETTINGS, NAMES[-1]))
+            raise InputError(f"settings = {settings!r}: must be one of {known}, or a coefficient of a motion")
+        return (settings,)
+    variables_of(settings, 1)  # refuses what is no setting, before any work
     return tuple(settings)
 
 

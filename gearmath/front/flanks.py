@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
 from gearmath.front.tables import html_table
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 
@@ -31,6 +32,7 @@ class FlankSurface:
     file: FlankFile
 
     @classmethod
+    @checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"))
     def of(cls, member: Member, flank: str, file: FlankFile) -> FlankSurface:
         """The nominal points of a flank file as a grid."""
         rows, columns = (int(part) for part in file.header["grid"].split("x"))

@@ -170,8 +170,8 @@ def plan(
         if pitch is None or teeth is not None:
             raise InputError(f"{known.name} is a lathe: pitch is needed, and no teeth")
         _refuse_in_vain("for a thread", hob=hob, helix=helix, cut=cut, feed=feed, shift=shift or None, pin=pin)
-        turned = hand or "right"
-        return Job(known, plan_thread(known, pitch_of(pitch), starts or 1, turned, rpm, run_up))
+        first = 1 if starts is None else starts
+        return Job(known, plan_thread(known, pitch_of(pitch), first, hand or "right", rpm, run_up))
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
     if helix is None:

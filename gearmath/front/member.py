@@ -126,7 +126,7 @@ class Member:
         if places is None:
             at = blank_grid(self.spec, *(size or (5, 9)), margin)
             return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, margin))
-        axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else places
+        axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else map(np.asarray, places)
         with about(Path(places) if isinstance(places, str | Path) else None):
             at = listed_grid(self.spec, axial, radial, size or (len(axial), 1))
         return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, None))

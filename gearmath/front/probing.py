@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Truth, Whole
+from gearmath.arguments.kinds import Truth
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, machine_of, probe_of, shop_of
@@ -106,7 +106,7 @@ class ProbingProgram:
             found = judge_probing(self.read, name, spec, own, machine, probe, begin(self._measuring, "block"))
         refuse_faults(found, name)
 
-    @checked_call(number=Whole(1, 99_999))
+    @checked_call
     def run(
         self,
         path: str | Path,

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Number, Record
+from gearmath.arguments.kinds import Record
+from gearmath.arguments.known import KNOWN
 from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.errors import InputError
 from gearmath.files import write_text
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 
 #: Columns of the tooth space that programs are judged with.
 _COLUMNS = 7
-#: Tolerances [mm] that a report can have.
-_JUDGED = Number(1e-5, 1.0, "mm")
 
 
 @dataclass(frozen=True)
@@ -147,7 +146,7 @@ class Program:
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
 
-    @checked_call(tolerance=_JUDGED, flank_tolerance=_JUDGED)
+    @checked_call(tolerance=KNOWN["report_tolerance"])
     def report(
         self,
         tolerance: float = 1e-3,

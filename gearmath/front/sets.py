@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Anything, OneOf, Record
+from gearmath.arguments.kinds import Content, Each, OneOf, Record
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import about
 from gearmath.files import write_text
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _SPEC = Record("gearmath.specs.bevel_set", "BevelSet", "the checked content of a set file")
 
 
-@checked_call(spec=_SPEC, remarks=Anything())
+@checked_call(spec=_SPEC, remarks=Each(Content(), "must be a list of sentences"))
 @dataclass(frozen=True)
 class GearSet:
     """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file.

@@ -49,6 +49,8 @@ def described(model: type[Spec]) -> str | None:
 
 def another_kind(values: Mapping[str, Any], model: type[Spec] | None = None) -> str | None:
     """What a file describes that ``model`` refused, where its keys are just those of another kind; else None."""
+    if model is not None and set(values) <= set(_fields(model)):
+        return None  # of its own kind: what is wrong is a value
     for words, (module, name) in _MODELS.items():
         other = getattr(importlib.import_module(f"gearmath.specs.{module}"), name)
         if other is not model and _has_keys_of(values, other):
@@ -75,12 +77,16 @@ def told(text: str, own: str = "") -> str:
 
 def _has_keys_of(values: Mapping[str, Any], model: type[BaseModel]) -> bool:
     """Whether all keys of a file, or of a table in it, are of a model, and those that it needs are there."""
-    fields = {name: field for key, field in model.model_fields.items() for name in _names(key, field)}
+    fields = _fields(model)
     needed = [_names(key, field) for key, field in model.model_fields.items() if field.is_required()]
     if not set(values) <= set(fields) or not all(any(name in values for name in names) for names in needed):
         return False
     tables = ((value, table_in(fields[key].annotation)) for key, value in values.items() if isinstance(value, Mapping))
     return all(inner is None or _has_keys_of(value, inner) for value, inner in tables)
+
+
+def _fields(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    return {name: field for key, field in model.model_fields.items() for name in _names(key, field)}
 
 
 def _names(key: str, field: FieldInfo) -> list[str]:

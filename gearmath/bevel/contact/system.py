@@ -31,10 +31,6 @@ _SIDES = 2
 COUNT = _SIDES * len(BORDERS)
 
 
-#: Displacement [mm] beyond which no assembly is meant.
-MOST_MM = 50.0
-
-
 @dataclass(frozen=True)
 class Assembly:
     """V, H, J [mm] and the growth of the shaft angle [rad], with the signs of chapter 25."""

@@ -9,7 +9,7 @@ from typing import Any
 
 from nicegui import ui
 
-from gearmath.bevel.contact.system import MOST_MM
+from gearmath.arguments.known import MOST_MM
 from gearmath.errors import InputError
 from gearmath.front.contact import Contact, contact
 from gearmath.front.measured import Measurement

@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from nicegui import ui
 
+from gearmath.arguments.known import MOST_TOUCHES
 from gearmath.errors import InputError
 from gearmath.hmi import acting, blocks, program_list, programs_work, widgets
 from gearmath.hmi.messages import Text
@@ -17,7 +18,6 @@ from gearmath.hmi.words import duration
 from gearmath.hmi.work import Progress
 from gearmath.machine.measuring.checked import ProbingChoice
 from gearmath.machine.planning.cut_plan import CuttingJob
-from gearmath.specs.measurement import MOST_TOUCHES
 
 #: What the fields ask for: a cutting job, or what is probed.
 Asked = TypeVar("Asked", CuttingJob, ProbingChoice)
