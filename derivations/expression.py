@@ -57,12 +57,9 @@ class Expression:
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not IDENTIFIER.match(self.name):
             raise InputError(f"expression name {self.name!r} is no C identifier")
-        if not isinstance(self.description, str) or not isinstance(self.source, str):
-            raise InputError(f"{self.name}: description and source must be text")
-        if not all(isinstance(one, Quantity) for one in _listed(self.inputs)):
-            raise InputError(f"{self.name}: inputs = {self.inputs!r}: must be a tuple of Quantity")
-        if not all(len(_listed(one)) == 2 and isinstance(one[0], Quantity) for one in _listed(self.outputs)):
-            raise InputError(f"{self.name}: outputs = {self.outputs!r}: must be pairs of a Quantity and its expression")
+        for key, fits, words in self._checks():
+            if not fits:
+                raise InputError(f"{self.name}: {key} = {getattr(self, key)!r}: {words}")
         names = [quantity.name for quantity in (*self.inputs, *(quantity for quantity, _ in self.outputs))]
         if len(set(names)) != len(names):
             raise InputError(f"{self.name}: a name appears twice among {names}")
@@ -78,6 +75,15 @@ class Expression:
                 f"{self.name} uses {sorted(map(str, used - given))}, which are not among its inputs "
                 f"{sorted(map(str, given))}: add them to the inputs, or substitute them"
             )
+
+    def _checks(self) -> Iterator[tuple[str, bool, str]]:
+        """Of each field, whether its value can be, and what it must be."""
+        yield "description", isinstance(self.description, str) and bool(self.description), "must be text"
+        yield "source", isinstance(self.source, str), "must be text"
+        yield "inputs", all(isinstance(one, Quantity) for one in _listed(self.inputs)), "must be a tuple of Quantity"
+        pairs = all(len(_listed(one)) == 2 and isinstance(one[0], Quantity) for one in _listed(self.outputs))
+        yield "outputs", pairs, "must be pairs of a Quantity and its expression"
+        yield "requires", all(isinstance(one, sp.Basic) for one in _listed(self.requires)), "must be SymPy expressions"
 
     @staticmethod
     def elements_of(value: sp.Basic | sp.MatrixBase) -> tuple[sp.Expr, ...]:

@@ -70,6 +70,7 @@ class Quantity:
         """Of each key, whether its value can be, and what it must be."""
         for key in ("description", "unit", "latex"):
             yield key, isinstance(getattr(self, key), str), "must be text"
+        yield "latex", self.latex != "", "must not be empty"
         ordered = _are(self.domain, _is_number) and len(self.domain) == 2 and self.domain[0] < self.domain[1]
         yield "domain", ordered, "must be the least and the greatest value, which is more"
         yield "shape", _are(self.shape, _is_count), "must be a tuple of whole numbers, at least 1"
@@ -77,7 +78,11 @@ class Quantity:
         yield "values", _are(self.values, _is_number), "must be a tuple of numbers"
         yield "scale", _is_number(self.scale) and 0 < self.scale < math.inf, "must be a finite number, greater than 0"
         yield "components", _are(self.components, lambda one: isinstance(one, Quantity)), "must be a tuple of Quantity"
-        yield "default", self.default is None or _is_number(self.default), "must be a number"
+        yield (
+            "default",
+            self.default is None or (_is_number(self.default) and abs(self.default) < math.inf),
+            "must be a finite number",
+        )
 
     @property
     def size(self) -> int:

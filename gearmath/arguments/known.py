@@ -98,7 +98,7 @@ KNOWN: dict[str, Kind] = {
     **dict.fromkeys(("tolerance", "roughing_stock", "finishing_stock"), Number(unit="mm", finite=False)),
     **dict.fromkeys(("report_tolerance", "flank_tolerance"), Number(1e-5, 1.0, "mm")),
     "feed": Number(unit="mm/min", finite=False),
-    "spindle_rpm": Number(unit="1/min"),
+    "spindle_rpm": Number(0.0, unit="rpm", above=True),
     "dry_run": Truth(),
     "blocks": OneOf(("g1", "poly")),
     "cycle": OneOf(("tip", "axes")),
