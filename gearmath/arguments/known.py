@@ -5,19 +5,15 @@ Limits that depend on member, machine or job are not here: they are told where t
 
 from __future__ import annotations
 
+from gearmath.arguments.composed import Columns, Each, Either, Keyed, Pair
 from gearmath.arguments.kinds import (
     Called,
-    Columns,
     Content,
-    Each,
-    Either,
     Grid,
     Having,
-    Keyed,
     Kind,
     Number,
     OneOf,
-    Pair,
     Place,
     Record,
     Text,

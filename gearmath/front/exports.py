@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Each, Either
+from gearmath.arguments.composed import Each, Either
 from gearmath.arguments.known import EXPRESSION, KERNEL
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import about

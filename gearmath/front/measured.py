@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Either, Record, Text
+from gearmath.arguments.composed import Either
+from gearmath.arguments.kinds import Record, Text
 from gearmath.arguments.known import MEMBER, SET
 from gearmath.errors import InputError, about
 from gearmath.files import write_text

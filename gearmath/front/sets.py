@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Content, Each, OneOf, Record
+from gearmath.arguments.composed import Each
+from gearmath.arguments.kinds import Content, OneOf, Record
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import about
 from gearmath.files import write_text

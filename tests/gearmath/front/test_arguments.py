@@ -118,10 +118,9 @@ def _tries() -> Iterator[Any]:
         for key, one in _parameters(name).items():
             if f"{name}: {key}" in ANYTHING:
                 continue
-            numbers = [] if str(one.annotation) == "bool" else LIMITS.get(key, [])
-            yield pytest.param(
-                name, key, [*_wrong(str(one.annotation), one.default is None), *numbers], id=f"{name}: {key}"
-            )
+            wrong = [value for value in _wrong(str(one.annotation), one.default is None) if value != one.default]
+            wrong += [] if str(one.annotation) == "bool" else LIMITS.get(key, [])
+            yield pytest.param(name, key, wrong, id=f"{name}: {key}")
 
 
 @pytest.fixture(scope="module")
