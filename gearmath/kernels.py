@@ -16,13 +16,11 @@ import casadi as ca
 
 import derivations
 from derivations.quantity import Quantity
-from gearmath.arguments.call import checked_call
 from gearmath.engine import cache as kept
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 
 
-@checked_call
 @cache
 def kernel(name: str) -> Kernel:
     """The Kernel of the Expression called ``name``: derived and lowered once, then kept in the cache of this user.

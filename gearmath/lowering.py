@@ -16,9 +16,10 @@ from sympy.core.relational import Relational
 from derivations.expression import Expression
 from gearmath.arguments.call import checked_call
 from gearmath.engine.kernel import Kernel
+from gearmath.errors import ComputationError
 
 
-class LoweringError(TypeError):
+class LoweringError(ComputationError, TypeError):
     """An expression uses something CasADi has no exact counterpart for."""
 
 

@@ -8,7 +8,7 @@ import inspect
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, overload
 
-from gearmath.arguments.kinds import Kind
+from gearmath.arguments.kinds import Kind, stated
 from gearmath.arguments.known import KNOWN
 from gearmath.errors import CallError, InputError
 
@@ -75,5 +75,5 @@ def _misuse(called: str, signature: inspect.Signature, options: Mapping[str, Any
         if key not in there:
             near = difflib.get_close_matches(key, there, 1)
             meant = f"did you mean {near[0]}? " if near else ""
-            return f"{called}: {key} = {options[key]!r}: is no argument; {meant}there are {known}"
+            return f"{called}: {stated(key, options[key], 'is no argument')}; {meant}there are {known}"
     return f"{called}: {why}; the arguments are {known}"

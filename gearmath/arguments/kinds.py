@@ -24,8 +24,8 @@ class Kind(Protocol):
 
 
 def stated(name: str, value: object, words: str) -> str:
-    """A sentence that names the argument, its value, and what it must be."""
-    text = repr(value)
+    """A sentence that names the argument, its value in one line, and what it must be."""
+    text = " ".join(repr(value).split())
     return f"{name} = {text if len(text) <= _LONGEST else f'{text[:_LONGEST]}...'}: {words}"
 
 
@@ -94,11 +94,12 @@ class Number(Plain):
     def fits(self, value: Any) -> bool:
         if not isinstance(value, Real) or is_truth(value):
             return False
-        if not self.finite:
-            return True
-        if not math.isfinite(value):
+        try:
+            value = float(value)
+        except OverflowError:  # a whole number of hundreds of digits
             return False
-        value = float(value)
+        if not math.isfinite(value):
+            return not self.finite
         if (self.above and value == self.low) or (self.below and value == self.high):
             return False
         return self.low <= value <= self.high
@@ -131,12 +132,12 @@ class Truth(Plain):
 
 @dataclass(frozen=True)
 class Text(Plain):
-    """Text that is not empty."""
+    """Text in one line that is not empty."""
 
     words: str = "must be text that is not empty"
 
     def fits(self, value: Any) -> bool:
-        return isinstance(value, str) and bool(value.strip())
+        return isinstance(value, str) and bool(value.strip()) and value.isprintable()
 
 
 @dataclass(frozen=True)

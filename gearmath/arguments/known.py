@@ -45,6 +45,8 @@ MACHINE = _or_file("gearmath.front.machines", "Machine", "a machine")
 PROBE = _or_file("gearmath.specs.calibration", "Calibration", "a probe")
 SHOP = _or_file("gearmath.specs.simulated_machine", "SimulatedMachine", "a simulated shop")
 HOBBER = _or_file("gearmath.specs.hobbing", "HobbingMachine", "a hobbing machine or lathe")
+#: Where a record was read from.
+ORIGIN = Record("pathlib", "Path", "the Path of a file")
 KERNEL = Record("gearmath.engine.kernel", "Kernel", "a kernel")
 EXPRESSION = Record("derivations.expression", "Expression", "an Expression")
 _FLANKS = ("concave", "convex")

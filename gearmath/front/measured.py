@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.arguments.call import checked_call
 from gearmath.arguments.composed import Either
 from gearmath.arguments.kinds import Record, Text
-from gearmath.arguments.known import MEMBER, SET
+from gearmath.arguments.known import MEMBER, ORIGIN, SET
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.member import Member
@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 _FEW_DRAWS = 2000
 
 
-@checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"))
+@checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"), source=ORIGIN)
 @dataclass(frozen=True)
 class Measurement:
     """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md.

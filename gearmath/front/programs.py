@@ -55,7 +55,10 @@ class Judgement:
     remarks: tuple[str, ...] = ()
 
 
-@checked_call(made=Record("gearmath.machine.judging.checked", "CheckedCut", "the plan of a program"))
+@checked_call(
+    machine=Record("gearmath.front.machines", "Machine", "a machine"),
+    made=Record("gearmath.machine.judging.checked", "CheckedCut", "the plan of a program"),
+)
 @dataclass(frozen=True)
 class Program:
     """The text of a program for a member on a machine, and its name on the control or in its file.

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from gearmath.arguments.call import checked_call
 from gearmath.arguments.composed import Each
 from gearmath.arguments.kinds import Content, OneOf, Record
+from gearmath.arguments.known import ORIGIN
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import about
 from gearmath.files import write_text
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 _SPEC = Record("gearmath.specs.bevel_set", "BevelSet", "the checked content of a set file")
 
 
-@checked_call(spec=_SPEC, remarks=Each(Content(), "must be a list of sentences"))
+@checked_call(spec=_SPEC, source=ORIGIN, remarks=Each(Content(), "must be a list of sentences"))
 @dataclass(frozen=True)
 class GearSet:
     """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file.
