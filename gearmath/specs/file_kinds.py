@@ -47,10 +47,17 @@ def described(model: type[Spec]) -> str | None:
     return next((words for words, known in _MODELS.items() if known == at), None)
 
 
+def of_another_kind(values: Mapping[str, Any], model: type[Spec]) -> str | None:
+    """The sentence that refuses a file of another kind than that of ``model``; None where it is of no other."""
+    wanted, unknown = described(model), [key for key in values if key not in _fields(model)]
+    if wanted is None or not unknown:  # of its own kind: what is wrong is a value
+        return None
+    kind = another_kind(values, model)
+    return kind and f"describes {kind}; the file of {wanted} is wanted; {unknown[0]}: no such key is known there"
+
+
 def another_kind(values: Mapping[str, Any], model: type[Spec] | None = None) -> str | None:
     """What a file describes that ``model`` refused, where its keys are just those of another kind; else None."""
-    if model is not None and set(values) <= set(_fields(model)):
-        return None  # of its own kind: what is wrong is a value
     for words, (module, name) in _MODELS.items():
         other = getattr(importlib.import_module(f"gearmath.specs.{module}"), name)
         if other is not model and _has_keys_of(values, other):

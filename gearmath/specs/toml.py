@@ -15,7 +15,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from gearmath.errors import InputError
 from gearmath.files import read_text
-from gearmath.specs.file_kinds import another_kind, described, kind_of
+from gearmath.specs.file_kinds import described, kind_of, of_another_kind
 from gearmath.specs.refusal import sentence
 
 #: So many characters of a line a message shows.
@@ -94,9 +94,7 @@ def _checked(
     try:
         return validate(values)
     except ValidationError as error:
-        kind = another_kind(values, model) if described(model) else None
-        why = sentence(error, model) if kind is None else f"describes {kind}; the file of {described(model)} is wanted"
-        raise InputError(f"{name}: {why}") from error
+        raise InputError(f"{name}: {of_another_kind(values, model) or sentence(error, model)}") from error
 
 
 def bundled(name: str) -> Path:
