@@ -165,7 +165,9 @@ def compensate(
 ) -> Correction:
     """Corrected settings of what was measured; see :meth:`Measurement.compensate`."""
     member, name = measured.member.spec, measured.member.name
-    chosen, moved = _free(settings), None
+    moved = None
+    with about(measured.source):
+        chosen = _free(settings)
     if mate is not None:
         other = measurement_in(mate, measured.member.gear_set)
         if other.member.name == name:
