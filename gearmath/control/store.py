@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from gearmath.arguments.call import checked_call
-from gearmath.arguments.kinds import Anything, Content, Record, Text
+from gearmath.arguments.kinds import Anything, Content, Record
 from gearmath.control.interface import RunStart
 from gearmath.control.store_place import check_local
 from gearmath.control.store_run import StoredRun, now
@@ -170,7 +170,7 @@ class MeasurementStore:
         except sqlite3.Error as error:
             raise ComputationError(f"{self.path}: {error}") from error
 
-    @checked_call(failed=Text())
+    @checked_call(failed=Content())
     @contextmanager
     def transaction(self, failed: str) -> Iterator[None]:
         """All or nothing, on the disk at the end. ``failed`` is what is said where SQLite, or the disk, refuses."""
