@@ -170,7 +170,7 @@ class MeasurementStore:
         except sqlite3.Error as error:
             raise ComputationError(f"{self.path}: {error}") from error
 
-    @checked_call
+    @checked_call(failed=Content())
     @contextmanager
     def transaction(self, failed: str) -> Iterator[None]:
         """All or nothing, on the disk at the end. ``failed`` is what is said where SQLite, or the disk, refuses."""

@@ -31,7 +31,12 @@ MADE = {"GearSet", "Member", "Machine", "Program", "Measurement", "Job", "Quanti
 #: Methods of derivations, which know nothing of files or the command line: mathematics, checked by its own tests.
 ITS_OWN = ("Expression.", "Kernel.", "Quantity.")
 #: Arguments that can be anything of their kind: values of a statement of SQL.
-ANYTHING = {"MeasurementStore.execute: values", "Program: text", "MeasurementStore.execute: sql"}
+ANYTHING = {
+    "MeasurementStore.execute: values",
+    "MeasurementStore.execute: sql",
+    "MeasurementStore.transaction: failed",
+    "Program: text",
+}
 #: What a sentence calls an argument that the work itself judges.
 CALLED = {"wanted": "class", "hob_shift": "hob shift"}
 
