@@ -16,8 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS
-from gearmath.bevel.contact.system import System, TouchPoint
+from gearmath.bevel.contact.surface import BORDERS, ROOT
+from gearmath.bevel.contact.system import System, TouchPoint, edges_of, on_fillet
 
 #: Step of the pinion [rad]: the usual one, and the one below which a contact counts as lost.
 _STEP, _LEAST_STEP = 0.05, 1e-5
@@ -60,7 +60,8 @@ class Segment:
 
     @property
     def kind(self) -> str:
-        """``interior``, ``edge`` (an edge and the mate's flank, or two edges) or ``corner``."""
+        """``interior``, ``edge`` (an edge and the mate's flank, or two edges), ``corner``, or ``fillet``: an edge and
+        the mate's fillet."""
         return kind_of(self.active)
 
     @property
@@ -81,6 +82,9 @@ class Segment:
 
 def kind_of(active: tuple[int, ...]) -> str:
     """The kind of a contact at these borders."""
+    edges = edges_of(active)
+    if len(edges) < len(active):
+        return "fillet"
     if not active:
         return "interior"
     return "corner" if len(active) > 1 and len({border // len(BORDERS) for border in active}) == 1 else "edge"
@@ -234,17 +238,21 @@ def _next(system: System, end: TouchPoint, assembly: np.ndarray, limit: float) -
     way = 1.0 if limit > end.rotation else -1.0
     if not abs(limit - end.rotation) > 0.0:
         return None
-    margins = end.margins
-    which = int(np.argmin(margins / np.where(np.isin(np.arange(len(margins)), end.active), 1e-4, 1.0)))
-    if which % len(BORDERS) == BORDERS.index("root"):
-        return None
+    margins, edges = end.margins, edges_of(end.active)
+    which = int(np.argmin(margins / np.where(np.isin(np.arange(len(margins)), edges), 1e-4, 1.0)))
+    roots = tuple(border for border in end.active if border not in edges)
     if which in end.active:
         candidates = [tuple(border for border in end.active if border != which)]
-    elif len(end.active) < 2:
-        candidates = [tuple(sorted((*end.active, which))), (which,)]
+    elif which % len(BORDERS) == ROOT:
+        candidates = [(*end.active, which)]
+    elif len(edges) < 2:
+        candidates = [(*end.active, which), (*roots, which)]
     else:
-        candidates = [tuple(sorted((border, which))) for border in end.active]
-    for active in candidates:
+        candidates = [(*roots, border, which) for border in edges]
+    for active in (tuple(sorted(one)) for one in candidates):
+        # a flank does not fit into the narrower fillet of its mate: only an edge does
+        if any(on_fillet(active)) and not edges_of(active):
+            continue
         start = system.solve(end.x, end.rotation, active, assembly)
         if start is None:
             continue
