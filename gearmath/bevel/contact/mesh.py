@@ -15,7 +15,7 @@ import numpy as np
 
 from gearmath.bevel.contact.leads import Leads, leads_over_a_pitch
 from gearmath.bevel.contact.local import LocalContact, local
-from gearmath.bevel.contact.places import Places, Seed, contact_line, places, seeds
+from gearmath.bevel.contact.places import Places, Seed, contact_line, fillet_seeds, places, seeds
 from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.contact.thread import Segment, Thread, follow, zero
 
@@ -225,17 +225,21 @@ def mesh(system: System, assembly: Assembly | None = None) -> Mesh:
 def _threads(system: System, found: Places, assembly: np.ndarray, reach: float) -> list[Thread]:
     limit = reach * system.pitch
     rotations = np.linspace(-limit, limit, round(2 * reach * _SOUGHT) + 1)
+    sought = [
+        seed
+        for rotation in sorted(rotations, key=abs)
+        for seed in seeds(found, float(rotation), system.sense)
+    ]
     threads: list[Thread] = []
-    for rotation in sorted(rotations, key=abs):
-        for seed in seeds(found, float(rotation), system.sense):
-            if _near(threads, seed):
-                continue
-            touch = system.solve(seed.x, seed.rotation, seed.active, assembly, 12)
-            if touch is None or (touch.margins < -1e-9).any() or _known(system, threads, touch):
-                continue
-            if not touch.active and not local(system, touch, assembly).definite:
-                continue
-            threads.append(follow(system, touch, assembly, -limit, limit))
+    for seed in (*sought, *fillet_seeds(system, found)):
+        if abs(seed.rotation) > limit or _near(threads, seed):
+            continue
+        touch = system.solve(seed.x, seed.rotation, seed.active, assembly, 12)
+        if touch is None or (touch.margins < -1e-9).any() or _known(system, threads, touch):
+            continue
+        if not touch.active and not local(system, touch, assembly).definite:
+            continue
+        threads.append(follow(system, touch, assembly, -limit, limit))
     return threads
 
 
