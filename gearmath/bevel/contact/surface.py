@@ -72,14 +72,15 @@ class ContactSurface:
         distances[ROOT] = ca.fmin(distances[ROOT], _FOLD * fold)
         return ca.Function("limits", [w], [ca.vertcat(*distances)])
 
-    @cached_property
-    def fillet_limits(self) -> ca.Function:
-        """The same on the fillet, which lies between the root and the bottom of the blade."""
+    def part(self, below: bool) -> tuple[ca.Function, ca.Function]:
+        """Function and limits of the flank, or of the fillet ``below``: from the root to the bottom of the blade."""
+        if not below or self.fillet is None:
+            return self.function, self.limits
         w = ca.SX.sym("w", 3)
         point, normal, *_ = self.fillet(w)
         distances = self._from_borders(w, point, normal)
         distances[ROOT] = ca.fmin(-distances[ROOT], self.depth + distances[ROOT])
-        return ca.Function("fillet_limits", [w], [ca.vertcat(*distances)])
+        return self.fillet, ca.Function("limits", [w], [ca.vertcat(*distances)])
 
     def _from_borders(self, w: ca.SX, point: ca.SX, normal: ca.SX) -> list[ca.SX]:
         return [kernel("flank_border").function(w[0], point, normal, ca.DM(border))[0] for border in self.borders]
@@ -128,9 +129,7 @@ def displaced_surface(surface: ContactSurface, deviation: ca.Function) -> Contac
     fillet = None if surface.fillet is None else _displaced(surface.fillet, deviation)
     mean = surface.at(surface.blank.mean_cone_distance).contact[0]
     solve = _solver(function, mean, _nowhere)
-    return ContactSurface(
-        function, surface.borders, solve, surface.blank, surface.teeth, fillet, surface.depth
-    )
+    return ContactSurface(function, surface.borders, solve, surface.blank, surface.teeth, fillet, surface.depth)
 
 
 def _displaced(function: ca.Function, deviation: ca.Function) -> ca.Function:

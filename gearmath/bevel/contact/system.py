@@ -121,17 +121,14 @@ class System:
         return self._equations((False, False))
 
     def conditions(self, active: tuple[int, ...]) -> Points | None:
-        """The same for a contact at active borders, on a fillet where a root is among them; None without this fillet."""
+        """The same at active borders, on a fillet where a root is among them; None without such a fillet."""
         zones = on_fillet(active)
         if not any(zones):
             return self.equations
         if zones not in self._below:
-            there = all(
-                surface.fillet is not None
-                for surface, below in zip((self.pinion, self.gear), zones, strict=True)
-                if below
-            )
-            self._below[zones] = self._equations(zones) if there else None
+            surfaces = (self.pinion, self.gear)
+            lacks = any(below and one.fillet is None for one, below in zip(surfaces, zones, strict=True))
+            self._below[zones] = None if lacks else self._equations(zones)
         return self._below[zones]
 
     @cached_property
@@ -143,9 +140,7 @@ class System:
         points, normals, conditions, distances, edges = [], [], [], [], []
         for side, surface in enumerate((self.pinion, self.gear)):
             w, turn = x[3 * side : 3 * side + 3], (rotation, x[6])[side]
-            function, limits = surface.function, surface.limits
-            if zones[side]:
-                function, limits = surface.fillet, surface.fillet_limits
+            function, limits = surface.part(zones[side])
             point, normal, condition, *_ = function(w)
             conditions.append(condition)
             for border in surface.borders:

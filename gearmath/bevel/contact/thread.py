@@ -35,6 +35,10 @@ _ZERO = 1e-10
 _PARTS = 24
 
 
+#: Kinds of contact, from what is wanted to what must not be.
+KINDS = ("interior", "edge", "corner", "fillet")
+
+
 @dataclass(frozen=True)
 class Segment:
     """Contacts (at least one) of one kind in the order of the rotation, from end to end."""
