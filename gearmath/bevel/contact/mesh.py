@@ -13,6 +13,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
+from gearmath.bevel.contact.changes import changes_of_kind
 from gearmath.bevel.contact.leads import Gap, Leads, gaps_in_the_path, leads_over_a_pitch
 from gearmath.bevel.contact.local import LocalContact, local
 from gearmath.bevel.contact.places import Places, Seed, contact_line, fillet_seeds, places, seeds
@@ -127,18 +128,9 @@ class Mesh:
         limit = REACH * self.system.pitch
         count = math.floor(limit / step * (1 + 1e-12))
         rotations = np.arange(-count, count + 1) * step
-        others = [at for at in self.changes if np.abs(rotations - at).min() > 1e-9]
+        changes = changes_of_kind(self.system, self.threads, limit)
+        others = [at for at in changes if np.abs(rotations - at).min() > 1e-9]
         return self.rows(np.sort(np.concatenate([rotations, others])))
-
-    @property
-    def changes(self) -> list[float]:
-        """Rotations [rad] at which the kind of contact of pair 0 changes."""
-        return [
-            after.ends[0]
-            for thread in self.threads
-            for before, after in zip(thread.segments[:-1], thread.segments[1:], strict=True)
-            if before.kind != after.kind
-        ]
 
     @cached_property
     def reference(self) -> float | None:
