@@ -49,7 +49,7 @@ class Gap:
 
 
 def gaps_in_the_path(run: Mesh) -> list[Gap]:
-    """Where what the gear follows would jump, which the first of all contacts cannot: the one that goes on is not known.
+    """Where what the gear follows would jump, as the first of all contacts cannot: one that goes on is not known.
 
     The step is infinite where no other contact is known at all.
     """
