@@ -23,6 +23,8 @@ _ROWS, _COLUMNS = 9, 17
 #: Which borders of both flanks make an edge.
 _EDGES = np.array([name != "root" for name in BORDERS] * 2)
 _COUNT = len(_EDGES)
+#: Parts of the depth of a fillet: so deep below the root a tip may lie to be tried, from so deep on the fillet at most.
+_REACH, _BEGUN = 3.0, 0.8
 
 
 @dataclass(frozen=True)
@@ -176,7 +178,9 @@ def fillet_seeds(system: System, found: Places) -> list[Seed]:
         line = on_border(found, tip, found.x, found.rotation[..., None])
         distance, x, rotation = line[:, :_COUNT], line[:, _COUNT:-1], line[:, -1]
         below = surface.below_root(x[:, 3 * side : 3 * side + 3])
-        inside = (np.delete(distance, root, axis=1) > -ON).all(axis=1) & (below > 0) & (below < surface.depth)
+        # a tip that would reach deeper into the flank than the fillet does may still stop on it
+        inside = (np.delete(distance, root, axis=1) > -ON).all(axis=1) & (below > 0) & (below < _REACH * surface.depth)
+        x[:, 3 * side] += (np.minimum(below, _BEGUN * surface.depth) - below) * -surface.borders[ROOT][0]
         active = tuple(sorted((tip, root)))
         begun += [Seed(float(rotation[k]), x[k], active) for k in np.flatnonzero(inside)]
     return sorted(begun, key=lambda seed: abs(seed.rotation))

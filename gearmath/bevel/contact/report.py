@@ -42,7 +42,7 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
     zero = run.reference or 0.0
     rows = run.path(step)
     followed = run.followed(np.array([row.rotation for row in rows]))
-    spread = run.leads.peak_to_peak
+    spread = None if run.gaps else run.leads.peak_to_peak
     return {
         "outcome": run.outcome,
         "leading_kinds": list(run.leads.kinds),

@@ -18,20 +18,20 @@ from gearmath.specs.bevel_set import SIDES, Member
 from tests.gearmath.bevel.contact.conftest import _heights
 
 #: Degrees along the tooth and up the blade; parts of the face width beyond either end.
-_DEGREES, _BEYOND = (11, 23), 0.02
+_DEGREES, _BEYOND = (11, 31), 0.02
 #: Part of the quarter turn from the flank's end to the bottom of the space that the lower patch does not reach. [rad]
 _BOTTOM = 0.3
 
 
 @dataclass(frozen=True)
 class Patch:
-    """Height over the pitch cone and azimuth of what one section of the blade cuts, over (across, part of the section).
+    """Azimuth of what one section of the blade cuts, over (across, part of its height), parts -1 to 1 upwards.
 
-    Parts -1 to 1 lead upwards.
+    ``ends`` are the heights over the pitch cone of both parts.
     """
 
-    height: np.ndarray
     azimuth: np.ndarray
+    ends: tuple[np.ndarray, np.ndarray]
 
     @classmethod
     def of(cls, member: Member, flank: str, name: str, ends: tuple[float, float]) -> Patch:
@@ -51,15 +51,23 @@ class Patch:
         height = (radius * along[0] - found.point[:, 2] * along[1]).reshape(shape)
         azimuth = np.unwrap(np.unwrap(np.arctan2(found.point[:, 1], found.point[:, 0]).reshape(shape)), axis=0)
         one, other = (np.linalg.inv(chebyshev.chebvander(at, n)) for at, n in zip(nodes, _DEGREES, strict=True))
-        return cls(one @ height @ other.T, one @ azimuth @ other.T)
+        high, turn = (one @ values @ other.T for values in (height, azimuth))
+        # the same by height: which part of the blade has it is found by Newton's method
+        low, top = (np.array([chebyshev.chebval(end, row) for row in high]) for end in (-1.0, 1.0))
+        wanted = _between(chebyshev.chebval(x, low), chebyshev.chebval(x, top), y)
+        rate = chebyshev.chebder(high, axis=1)
+        for _ in range(30):
+            y = np.clip(y - (chebyshev.chebval2d(x, y, high) - wanted) / chebyshev.chebval2d(x, y, rate), -1.0, 1.0)
+        assert np.abs(chebyshev.chebval2d(x, y, high) - wanted).max() < 1e-9
+        return cls(one @ chebyshev.chebval2d(x, y, turn).reshape(shape) @ other.T, (low, top))
 
     def at(self, x: np.ndarray, height: np.ndarray) -> np.ndarray:
-        """Azimuths at heights: which part of the section has them is found by Newton's method."""
-        y, rate = np.zeros(x.shape), chebyshev.chebder(self.height, axis=1)
-        for _ in range(9):
-            off = chebyshev.chebval2d(x, y, self.height) - height
-            y = np.clip(y - off / chebyshev.chebval2d(x, y, rate), -1.0, 1.02)
-        return chebyshev.chebval2d(x, y, self.azimuth)
+        low, top = (chebyshev.chebval(x, end) for end in self.ends)
+        return chebyshev.chebval2d(x, np.clip(2 * (height - low) / (top - low) - 1, -1.0, 1.0), self.azimuth)
+
+
+def _between(low: np.ndarray, top: np.ndarray, part: np.ndarray) -> np.ndarray:
+    return low + (part + 1) / 2 * (top - low)
 
 
 @dataclass(frozen=True)
@@ -84,5 +92,5 @@ class Filleted:
         blank = self.member.blank
         bottom, tip = _heights(self.member, blank.mean_cone_distance + (across - 0.5) * blank.face_width)
         height = bottom + up * (tip - bottom)
-        joint = chebyshev.chebval2d(x, np.ones(x.shape), self.fillet.height)
+        joint = chebyshev.chebval(x, self.fillet.ends[1])
         return np.where(height < joint, self.fillet.at(x, height), self.flank.at(x, height))
