@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearmath.bevel.contact.system import edges_of
+from gearmath.bevel.contact.surface import edges_of
 from gearmath.bevel.contact.thread import KINDS, Thread, kind_of, zero
 
 if TYPE_CHECKING:

@@ -13,8 +13,8 @@ from gearmath.bevel.contact.mesh import Mesh, MeshRow, mesh
 from gearmath.bevel.contact.misalignment import contact_at, sensitivities
 from gearmath.bevel.contact.outcome_limits import Change
 from gearmath.bevel.contact.pattern import pattern
-from gearmath.bevel.contact.surface import BORDERS, nominal_surface
-from gearmath.bevel.contact.system import Assembly, System, edges_of, pair_system
+from gearmath.bevel.contact.surface import BORDERS, edges_of, nominal_surface
+from gearmath.bevel.contact.system import Assembly, System, pair_system
 from gearmath.bevel.contact.tolerance import EDGES, Tolerance
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
 

@@ -27,6 +27,16 @@ _FOLD = 5.0
 _STEPS, _TOLERANCE, _LIMITS = 12, 1e-11, np.array([8.0, 0.4, 0.4])
 
 
+def edges_of(active: tuple[int, ...]) -> tuple[int, ...]:
+    """Those of the active borders that are edges: an active root says that the contact lies on the fillet below it."""
+    return tuple(border for border in active if border % len(BORDERS) != ROOT)
+
+
+def on_fillet(active: tuple[int, ...]) -> tuple[bool, ...]:
+    """Whether a contact at active borders lies on the fillet of the pinion, and on that of the gear."""
+    return tuple(len(BORDERS) * side + ROOT in active for side in range(2))
+
+
 @dataclass(frozen=True, eq=False)
 class ContactSurface:
     """One flank of a member, nominal or measured.

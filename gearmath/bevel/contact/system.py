@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS, ROOT, ContactSurface
+from gearmath.bevel.contact.surface import BORDERS, ContactSurface, edges_of, on_fillet
 from gearmath.bevel.turning import half_turn
 from gearmath.engine.points import Points
 from gearmath.errors import ComputationError
@@ -29,17 +29,6 @@ _LIMITS = np.array([3.0, 0.2, 0.2, 3.0, 0.2, 0.2, 0.2])
 _SIDES = 2
 #: Borders of both members: the pinion's, then the gear's.
 COUNT = _SIDES * len(BORDERS)
-
-
-def edges_of(active: tuple[int, ...]) -> tuple[int, ...]:
-    """Those of the active borders that are edges: an active root says that the contact lies on the fillet below it."""
-    return tuple(border for border in active if border % len(BORDERS) != ROOT)
-
-
-def on_fillet(active: tuple[int, ...]) -> tuple[bool, ...]:
-    """Whether a contact at active borders lies on the fillet of the pinion, and on that of the gear."""
-    return tuple(len(BORDERS) * side + ROOT in active for side in range(_SIDES))
-
 
 #: Displacement [mm] beyond which no assembly is meant.
 MOST_MM = 50.0

@@ -12,12 +12,12 @@ from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS, ROOT
-from gearmath.bevel.contact.system import System, TouchPoint, edges_of, on_fillet
+from gearmath.bevel.contact.cubics import cubic, cubic_of_two, nodes_of
+from gearmath.bevel.contact.surface import BORDERS, ROOT, edges_of, on_fillet
+from gearmath.bevel.contact.system import System, TouchPoint
 
 #: Step of the pinion [rad]: the usual one, and the one below which a contact counts as lost.
 _STEP, _LEAST_STEP = 0.05, 1e-5
@@ -48,11 +48,11 @@ class Segment:
     @cached_property
     def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rotations (n,), x (n,7) and dx/dφ_1 (n,7) of the contacts."""
-        return _nodes(self.touches)
+        return nodes_of(self.touches)
 
     def between(self, rotations: np.ndarray) -> np.ndarray:
         """x (n,7) at rotations (n,) by Hermite's cubics between the contacts."""
-        return _cubic(self.nodes, rotations)
+        return cubic(self.nodes, rotations)
 
     @cached_property
     def rotations(self) -> list[float]:
@@ -80,7 +80,7 @@ class Segment:
         if len(self.touches) == 1:
             return None
         k = min(max(bisect_left(self.rotations, rotation), 1), len(self.touches) - 1)
-        guess = _cubic_of_two(self.touches[k - 1], self.touches[k], rotation)
+        guess = cubic_of_two(self.touches[k - 1], self.touches[k], rotation)
         return system.solve(guess, rotation, self.active, assembly)
 
 
@@ -188,7 +188,7 @@ def _corrected(
     """The contact at a rotation, from the cubic through the last two positions, or from the tangent of one."""
     last = before[-1]
     if len(before) > 1:
-        guess = _cubic_of_two(before[-2], last, rotation)
+        guess = cubic_of_two(before[-2], last, rotation)
     else:
         guess = last.x + (rotation - last.rotation) * last.tangent
     return system.solve(guess, rotation, last.active, assembly, _CORRECTIONS)
@@ -219,7 +219,7 @@ def _border_slowly(
         if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < _CLOSE:
             break
         rotation = low.rotation + (high.rotation - low.rotation) * one / (one - other)
-        middle = system.solve(_cubic_of_two(low, high, rotation), rotation, inside.active, assembly)
+        middle = system.solve(cubic_of_two(low, high, rotation), rotation, inside.active, assembly)
         if middle is None:
             break
         value = float(middle.margins[which])
@@ -264,39 +264,6 @@ def _next(system: System, end: TouchPoint, assembly: np.ndarray, limit: float) -
         if probe is not None and (probe.margins >= _SLACK).all():
             return start
     return None
-
-
-def _nodes(touches: Sequence[TouchPoint]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return (
-        np.array([touch.rotation for touch in touches]),
-        np.stack([touch.x for touch in touches]),
-        np.stack([touch.tangent for touch in touches]),
-    )
-
-
-def _cubic(nodes: tuple[np.ndarray, np.ndarray, np.ndarray], rotations: np.ndarray) -> np.ndarray:
-    """x (n,7) at rotations (n,) by Hermite's cubics between nodes in the order of their rotation; of one, its line."""
-    at, x, slope = nodes
-    if len(at) == 1:
-        return x + (rotations - at)[:, None] * slope
-    k = np.clip(np.searchsorted(at, rotations), 1, len(at) - 1)
-    h = (at[k] - at[k - 1])[:, None]
-    return _hermite((rotations - at[k - 1])[:, None] / h, h, (x[k - 1], slope[k - 1]), (x[k], slope[k]))
-
-
-def _cubic_of_two(one: TouchPoint, other: TouchPoint, rotation: float) -> np.ndarray:
-    """x (7,) at a rotation by Hermite's cubic through two contacts, in either order."""
-    h = other.rotation - one.rotation
-    return _hermite((rotation - one.rotation) / h, h, (one.x, one.tangent), (other.x, other.tangent))
-
-
-def _hermite(t: Any, h: Any, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    """The cubic at the part ``t`` of the way ``h`` from one value and slope to another."""
-    rest = 1 - t
-    found: np.ndarray = (
-        (1 + 2 * t) * rest**2 * one[0] + t**2 * (3 - 2 * t) * other[0] + h * t * rest * (rest * one[1] - t * other[1])
-    )
-    return found
 
 
 def zero(
