@@ -10,7 +10,7 @@ from functools import cache, cached_property
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.generation import Generation, Section, solve_section
+from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.newton import FlankPoints
 from gearmath.engine.kernel import Kernel
@@ -21,6 +21,8 @@ from gearmath.specs.bevel_set import SIDES, Blank, Member
 #: The borders of a flank, in the order of ``Surface.borders``. The root makes no edge: there the fillet begins.
 BORDERS = ("tip", "toe", "heel", "root")
 ROOT = BORDERS.index("root")
+#: Places from toe to heel at which a root is looked at.
+_ALONG = 7
 #: Fold [1] as a distance from the singular line [mm], in its size.
 _FOLD = 5.0
 #: Newton steps to a place, the residual [mm] to reach, and the largest change of u [mm], β, θ [rad] in a step.
@@ -47,7 +49,8 @@ class ContactSurface:
     finds points at places z_w, r_w (n,) [mm], NaN where there are none.
 
     ``fillet`` is what the rounded edge of the blade leaves below the root, as ``function`` with the same u, down to
-    ``depth`` [mm] of it; None where no rounded edge joins the main section.
+    ``depth`` [mm] of it; None where no rounded edge joins the main section, or where the flank is undercut: there the
+    fillet cuts into the flank instead of going on from its root.
     """
 
     function: ca.Function
@@ -125,7 +128,7 @@ def nominal_surface(member: Member, flank: str) -> ContactSurface:
     solve = _solver(function, mean, lambda axial, radial: _slowly(how, section, axial, radial))
     borders = _borders(member, section)
     fillet, depth = None, 0.0
-    if "edge" in sections and "toprem" not in sections:
+    if "edge" in sections and "toprem" not in sections and not _undercut(member.blank, how, section, mean):
         fillet, depth = _fillet(how, sections["edge"], borders[ROOT])
     return ContactSurface(function, borders, solve, member.blank, member.teeth, fillet, depth)
 
@@ -240,6 +243,17 @@ def _generated(flank: Generation, section: Section, u: ca.SX, w: ca.SX) -> tuple
     point, normal, meshing = _family(section.arc is not None).function(u, w[1], w[2], *given)
     reach = float(flank.settings[0])
     return point, normal, meshing / reach if flank.rolling else reach * w[2]
+
+
+def _undercut(blank: Blank, how: Generation, section: Section, mean: np.ndarray) -> bool:
+    """Whether the flank has turned back on itself where the main section of the blade ends, from toe to heel."""
+    end = section.upper if section.tip_is_upper else section.lower
+    distance = blank.mean_cone_distance + blank.face_width * np.linspace(-0.5, 0.5, _ALONG)
+    start, u = np.tile(mean, (_ALONG, 1)), np.full(_ALONG, end)
+    start[:, 0] = end
+    found = solve_curve(how, section, u, (math.cos(blank.delta), math.sin(blank.delta)), distance, start)
+    (sense,) = turning_sense(how, section, mean[None] / [_length_of_u(section), 1.0, 1.0])
+    return not found.converged.all() or bool((found.sense * sense <= 0).any())
 
 
 def _fillet(how: Generation, edge: Section, root: np.ndarray) -> tuple[ca.Function, float]:
