@@ -14,6 +14,8 @@ from gearmath.arguments.call import checked_call
 from gearmath.arguments.kinds import Truth
 from gearmath.bevel.contact.mesh import Mesh as Run
 from gearmath.bevel.contact.mesh import mesh
+from gearmath.bevel.contact.outcome_limits import SEARCHES as CHANGES
+from gearmath.bevel.contact.outcome_limits import outcome_limits
 from gearmath.bevel.contact.report import SIDES, figures, tolerance_figures
 from gearmath.bevel.contact.system import Assembly
 from gearmath.bevel.contact.tolerance import SEARCHES
@@ -35,7 +37,8 @@ if TYPE_CHECKING:
 class Contact:
     """A pair in contact: ``runs`` has the exact contact of each side, ``drive`` and ``coast``, in mm and rad.
 
-    ``tolerances`` [mm] say by side how far V and H may go until the pattern reaches an edge, where that was asked for.
+    ``tolerances`` [mm] say by side how far V and H may go until the pattern reaches an edge, and until the
+    pair runs otherwise, where that was asked for.
     """
 
     measured: MeasuredPair
@@ -91,7 +94,7 @@ def contact(
         flanks |= found
         remarks += [text if one.source is None else f"{one.source}: {text}" for text in said]
     whole = MeasuredPair(pair.spec, flanks, tuple(remarks))
-    given, searches = Assembly(v, h, j, math.radians(shaft)), SEARCHES if tolerance else 0
+    given, searches = Assembly(v, h, j, math.radians(shaft)), SEARCHES + CHANGES if tolerance else 0
     progress = begin(len(sides) * (1 + searches), "step")
     runs, limits = {}, {}
     for side in sides:
@@ -100,7 +103,8 @@ def contact(
         runs[side] = mesh(system, given)
         progress(1)
         if tolerance:
-            limits[side] = tolerance_figures(search(runs[side], progress=progress))
+            changes = outcome_limits(runs[side], progress)
+            limits[side] = tolerance_figures(search(runs[side], progress=progress), changes)
     return Contact(whole, runs, limits)
 
 
