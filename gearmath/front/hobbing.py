@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, cast, get_args
 from gearmath.errors import InputError
 from gearmath.front.machines import load_hobber
 from gearmath.front.progress import Begin, Progress, silent, unheard
-from gearmath.front.tables import html_table
 from gearmath.gearbox.hobbed.choice import MOST_CUTS, Choice
 from gearmath.gearbox.hobbed.choice import choose as search
 from gearmath.gearbox.hobbed.contributions import Contribution, sources
@@ -22,6 +21,7 @@ from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch_of
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
 __all__ = ("Job", "choose", "export_teensy", "hob", "load_hobber", "plan")
 
 
-@dataclass(frozen=True)
-class Job:
+@dataclass(frozen=True, repr=False)
+class Job(Shown):
     """A job of the electronic gearbox; ``plan`` has exact ratio, rates against limits, what to set and measure."""
 
     machine: HobbingMachine
@@ -85,8 +85,8 @@ class Job:
         return HobbedThread(self.plan, tuple(traces))
 
     def to_dict(self) -> dict[str, Any]:
-        """The plan by name, exact numbers as fractions."""
-        return asdict(self.plan)
+        """As ``gearmath gearbox plan --json`` prints it; what is a fraction also exactly, as text."""
+        return plain_numbers(asdict(self.plan))
 
     def plot(
         self,
@@ -115,9 +115,26 @@ class Job:
         axes.set_title(f"{plan.machine}: {steps}, {plan.rpm:.0f} rpm")
         return figure
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        plan = self.plan
+        what = f"thread of {float(plan.pitch):g} mm" if isinstance(plan, ThreadPlan) else f"gear of {plan.teeth} teeth"
+        figures: list[Shows] = [("steps per count", str(self.steps_per_count), ""), ("speed", plan.rpm, "rpm")]
+        figures += [("at most", plan.highest_rpm, "rpm")]
+        return f"{what} on the {plan.machine}", figures
+
     def _repr_html_(self) -> str:
-        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str | Fraction)}
-        return html_table(f"job on the {self.plan.machine}", ["figure", "value"], list(plain.items()))
+        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str)}
+        return html_table(
+            f"job on the {self.plan.machine}",
+            ["figure", "value"],
+            [[key.replace("_", " "), value] for key, value in plain.items()],
+        )
+
+
+def plain_numbers(values: dict[str, Any]) -> dict[str, Any]:
+    """For JSON: a fraction as number, and exactly beside it."""
+    exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
+    return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
 
 
 def plan(
@@ -144,8 +161,8 @@ def plan(
     return Job(known, plan_gear(known, teeth, **_with_helix(options, way, feed)))
 
 
-@dataclass(frozen=True)
-class HobbedThread:
+@dataclass(frozen=True, repr=False)
+class HobbedThread(Shown):
     """The thread that the gearbox would cut: ``traces`` have where the carriage is too far [mm], one of each rule."""
 
     plan: ThreadPlan
@@ -176,9 +193,17 @@ class HobbedThread:
 
         return thread_figure(self.plan.machine, list(self.traces))
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = []
+        for trace in self.traces:
+            figures.append((f"{trace.rule}: total", 1000 * trace.total, "um"))
+            figures += [(f"{trace.rule}: single lead", 1000 * trace.single_lead, "um")]
+            figures += [(f"{trace.rule}: drift", 1000 * trace.drift, "um")]
+        return f"thread of {float(self.plan.pitch):g} mm on the {self.plan.machine}", figures
 
-@dataclass(frozen=True)
-class HobbedGear:
+
+@dataclass(frozen=True, repr=False)
+class HobbedGear(Shown):
     """The gear that the gearbox would cut: ``gears`` have its inspection and classes, one of each rule; ``shares`` says
     which part of the machine is to blame.
     """
@@ -224,6 +249,12 @@ class HobbedGear:
         from gearmath.plot.hobbed import inspection_figure
 
         return inspection_figure(self.title, [(gear.rule, gear.found) for gear in self.gears])
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [(f"{gear.rule}: class", gear.accuracy_class, "") for gear in self.gears]
+        for gear in self.gears:
+            figures += [(f"{gear.rule}: {one.figure}", one.value_um, "um") for one in gear.classes]
+        return self.title, figures
 
 
 def hob(

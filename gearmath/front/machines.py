@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from gearmath.shown import Shown, Shows
 from gearmath.specs.calibration import Calibration, load_calibration
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
     from gearmath.quality.calibration.tip import Tip
 
 
-@dataclass(frozen=True)
-class Machine:
+@dataclass(frozen=True, repr=False)
+class Machine(Shown):
     """A vertical 5-axis milling machine; ``spec`` is the checked content of its file (docs/machine_files.md)."""
 
     spec: MillingMachine
@@ -52,6 +53,14 @@ class Machine:
         from gearmath.front.probing import calibrate
 
         return calibrate(path, self, probe, lobing, run)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        spec = self.spec
+        figures: list[Shows] = [
+            ("control", spec.control.kind or "sinumerik", ""),
+            ("tool length", spec.tool_length, "mm"),
+        ]
+        return spec.name, figures
 
 
 def load_machine(path: str | Path = "vertical_5axis.toml") -> Machine:

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearmath.errors import InputError, about
-from gearmath.files import write_text
+from gearmath.files import csv_text, named, write_text
 from gearmath.front.member import Member
 from gearmath.front.progress import Progress, unheard
 from gearmath.front.sets import GearSet
-from gearmath.front.tables import html_table
 from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.quality.uncertainty.corrected import point_covariance
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
 
 if TYPE_CHECKING:
@@ -33,12 +33,19 @@ if TYPE_CHECKING:
     from gearmath.quality.foreign.points import Frame
     from gearmath.specs.calibration import Calibration
 
+#: Figures of a flank that a person looks at first, by their names in the JSON.
+_FIRST = {
+    "max_deviation_um": "largest deviation",
+    "rms_um": "RMS",
+    "F_p_um": "total pitch deviation",
+    "max_f_pt_um": "single pitch deviation",
+}
 #: Enough for the spread of a maximum to 2 %.
 _FEW_DRAWS = 2000
 
 
-@dataclass(frozen=True)
-class Measurement:
+@dataclass(frozen=True, repr=False)
+class Measurement(Shown):
     """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md.
 
     ``source`` is where it was read, for sentences.
@@ -158,9 +165,30 @@ class Measurement:
         write_flank_csv(Path(path), self.file)
         return Path(path)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Header and columns of the flank CSV; what it does not say is None."""
+        columns = {name: getattr(self.file, name) for name in ("flank", "tooth", "row", "col", "point", "normal")}
+        silent = {"deviation": self.file.deviation, "u": self.file.uncertainty}
+        return {
+            "member": self.member.name,
+            "header": dict(self.file.header),
+            **{name: values.tolist() for name, values in columns.items()},
+            **{name: [None if np.isnan(one) else float(one) for one in values] for name, values in silent.items()},
+        }
+
     def plot(self) -> Figure:
         """Topography of both flanks, pitch and runout as far as they were measured."""
         return self.evaluate().plot()
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        file, known = self.file, self.deviation[~np.isnan(self.deviation)]
+        figures: list[Shows] = [("points", len(file), "")]
+        if len(known):
+            largest, rms = float(known[abs(known).argmax()]), float(np.sqrt(np.mean(known**2)))
+            figures += [("largest deviation", 1000 * largest, "um"), ("RMS", 1000 * rms, "um")]
+        figures.append(("teeth", len(set(file.tooth.tolist()) - {self.member.teeth}), f"of {self.member.teeth}"))
+        where = "" if self.source is None else f", {self.source.name}"
+        return f"measured {self.member.name}{where}", figures
 
 
 def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measurement:
@@ -181,8 +209,8 @@ def load_measurement(path: str | Path, member: Member | GearSet) -> Measurement:
     return Measurement(one, file, Path(path))
 
 
-@dataclass(frozen=True)
-class Evaluation:
+@dataclass(frozen=True, repr=False)
+class Evaluation(Shown):
     """The figures of a measured member: ``found`` has all in mm, :meth:`to_dict` in µm, as the command's JSON."""
 
     measurement: Measurement
@@ -203,6 +231,11 @@ class Evaluation:
         """As ``gearmath evaluate --json`` prints it; lengths in µm where the name says so."""
         return self.found.as_dict()
 
+    def to_csv(self, path: str | Path) -> Path:
+        """Write all figures of :meth:`to_dict` as lines ``figure,value``, the name of a figure as the way to it."""
+        write_text(Path(path), csv_text(("figure", "value"), named(self.to_dict())))
+        return Path(path)
+
     def plot(self) -> Figure:
         """Topography of both flanks, pitch and runout as far as they were measured."""
         from gearmath.plot import evaluation_figure
@@ -220,18 +253,24 @@ class Evaluation:
         figures = figures_of(self.measurement.file, self.measurement.member.spec, self.found)
         return uncertain_figures(figures, covariance, _FEW_DRAWS)
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = []
+        for key, name in _FIRST.items():
+            for flank, row in self.to_dict()["flanks"].items():
+                if key in row:
+                    figures.append((f"{flank}: {name}", "withheld" if row[key] is None else row[key], "um"))
+        return f"evaluation of the {self.title}", figures
+
     def _repr_html_(self) -> str:
         flanks = self.to_dict()["flanks"]
-        names = [
-            name
-            for name in ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
-            if any(name in row for row in flanks.values())
-        ]
+        names = [name for name in _FIRST if any(name in row for row in flanks.values())]
         rows = [
             [flank, *("withheld" if row.get(name) is None else row[name] for name in names)]
             for flank, row in flanks.items()
         ]
-        return html_table(f"{self.measurement.member.name}, as measured", ["flank", *names], rows)
+        return html_table(
+            f"{self.measurement.member.name}, as measured", ["flank", *(f"{_FIRST[name]} (um)" for name in names)], rows
+        )
 
 
 def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurement:

@@ -16,7 +16,7 @@ from gearmath.errors import InputError, about
 from gearmath.front.changed import changed, check_keys, shallow
 from gearmath.front.flanks import FlankSurface, Tooth
 from gearmath.front.progress import Begin, silent
-from gearmath.front.tables import html_table
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, BevelSet
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.margins import Margins
@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from gearmath.front.sets import GearSet
 
 
-@dataclass(frozen=True)
-class Member:
+@dataclass(frozen=True, repr=False)
+class Member(Shown):
     """One member of a set: ``name`` is "pinion" or "gear", ``spec`` its part of the file, mm and degrees."""
 
     gear_set: GearSet
@@ -193,6 +193,11 @@ class Member:
         from gearmath.front.probing import probing
 
         return probing(self, machine, name=name, **options)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        spec = self.spec
+        figures: list[Shows] = [("teeth", spec.teeth, ""), ("hand", spec.hand, ""), ("cutting", spec.cutting, "")]
+        return f"{self.name} of {self.gear_set.title}", figures
 
     def _repr_html_(self) -> str:
         rows = [[key, *(getattr(self.spec.flank(flank), key) for flank in FLANKS)] for key in SETTINGS]

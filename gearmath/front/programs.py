@@ -28,20 +28,21 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
 from gearmath.machine.planning.targets import teeth_around
+from gearmath.shown import Shown, Shows
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 if TYPE_CHECKING:
+    from gearmath.front.timing import ProgramTime
     from gearmath.machine.control.executor import MachinePath
     from gearmath.machine.judging.cut import MetalLeft
     from gearmath.machine.judging.report import MillingReport
-    from gearmath.machine.judging.trajectory import Trajectory
 
 #: Columns of the tooth space that programs are judged with.
 _COLUMNS = 7
 
 
-@dataclass(frozen=True)
-class Judgement:
+@dataclass(frozen=True, repr=False)
+class Judgement(Shown):
     """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none.
 
     ``remarks`` are sentences about what only takes time.
@@ -51,9 +52,14 @@ class Judgement:
     faults: tuple[str, ...]
     remarks: tuple[str, ...] = ()
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [("faults", len(self.faults), ""), ("remarks", len(self.remarks), "")]
+        figures += [("fault", text, "") for text in self.faults] + [("remark", text, "") for text in self.remarks]
+        return "the machine must not run it" if self.faults else "the machine may run it", figures
 
-@dataclass(frozen=True)
-class Program:
+
+@dataclass(frozen=True, repr=False)
+class Program(Shown):
     """The text of a program for a member on a machine, and its name on the control or in its file.
 
     ``made`` is the plan that it was written from, where it was written here.
@@ -165,11 +171,11 @@ class Program:
             flank_tolerance=flank_tolerance,
         )
 
-    def time(self) -> Trajectory:
+    def time(self) -> ProgramTime:
         """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""
         from gearmath.front.timing import timed
 
-        return timed(self.read, self.name, self.machine, path=self.path).trajectory
+        return timed(self.read, self.name, self.machine, path=self.path)
 
     @cached_property
     def read(self) -> str:
@@ -192,6 +198,14 @@ class Program:
         """The tools of the program on a machine without errors, with blades as sharp as there are."""
         member, machine = self.member, self.machine.spec
         return runs_of(self.path, member.spec, member.name, machine, None, self.space, SHARP_EDGE)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("blocks", self.blocks, ""),
+            ("text", len(self.text) // 1000, "kB"),
+            ("machine", self.machine.spec.name, ""),
+        ]
+        return f"{self.name}, cutting the {self.member.name} of {self.member.teeth} teeth", figures
 
 
 def cutting(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,7 @@ from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.contact.system import Assembly, System, pair_system
 from gearmath.bevel.contact.tolerance import Tolerance
+from gearmath.shown import Shows
 from gearmath.specs.bevel_set import FLANKS, BevelSet
 
 #: The flank of the pinion that works on each side; the gear's is the other one.
@@ -62,6 +64,16 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
         "v_h_mm": v_h(run),
     }
+
+
+def shown_runs(runs: Mapping[str, Mesh]) -> list[Shows]:
+    """What matters most of the sides of a pair, where its record is shown."""
+    shown: list[Shows] = []
+    for side, run in runs.items():
+        spread = run.leads.peak_to_peak
+        shown.append((f"{side}: transmission error", None if spread is None else spread * ARCSEC, "arcsec"))
+    shown += [(f"{side}: contact ratio", run.contact_ratio, "") for side, run in runs.items()]
+    return [*shown, *((f"{side}: outcome", run.outcome, "") for side, run in runs.items())]
 
 
 def _degrees(rotation: float) -> float:
