@@ -56,8 +56,9 @@ class Job(Shown):
     ) -> Simulation:
         """Run the compiled step rule over so many encoder edges, "forward", "dither" or "reversals"; errors in steps.
 
-        It begins at the count ``start``; a ``trace`` keeps the errors on the way, for :meth:`plot`. Raises
-        ComputationError where there is no C compiler.
+        Returns ``worst_error`` of the rule and ``float_worst_error`` of a floating-point one beside it [steps], and
+        where encoder and motor stand at the end. It begins at the count ``start``; a ``trace`` keeps the errors on the
+        way, for :meth:`plot`. Raises ComputationError where there is no C compiler.
         """
         from gearmath.export.host import run_axes
 
@@ -290,8 +291,10 @@ def choose(
 ) -> Choice:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
 
-    Normal ``module`` [mm]; ``options``: face_width [mm], helix [degrees], hand. Raises InputError where no class can be
-    given, ComputationError where the finest parts do not reach it.
+    Normal ``module`` [mm]; ``options``: face_width [mm], helix [degrees], hand. Returns ``parts`` with microsteps,
+    lines, gashes and feed [mm per turn of the table], the ``gear`` that they cut with its figures and classes, and
+    ``rpm``, the highest speed of the hob. Raises InputError where no class can be given, ComputationError where the
+    finest parts do not reach it.
     """
     known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
     return search(known, wanted, module, teeth, **_with_helix(options), progress=begin(MOST_CUTS, "cut"))

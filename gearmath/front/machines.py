@@ -47,8 +47,10 @@ class Machine(Shown):
     ) -> Tip | AxisCalibration:
         """The tip of the probe from touches on sphere or ring, or the rotary axes from those on the work side's sphere.
 
-        Both have standard uncertainties [mm, rad]. By default those of the last run, which must be whole; ``lobing``
-        finds what the tip's radius does around, too. Raises InputError naming file and touch.
+        Returns of the tip ``radius``, ``offset`` (3,) [mm] and ``lobes`` (amplitude [mm], azimuth [rad]), of the axes
+        ``pivot_offset`` (3,), ``gauge_line_height``, ``x_zero`` [mm] and ``b_zero`` [rad], both with standard
+        uncertainties [mm, rad] and residuals in ``fit``. By default those of the last run, which must be whole;
+        ``lobing`` finds what the tip's radius does around, too. Raises InputError naming file and touch.
         """
         from gearmath.front.probing import calibrate
 
@@ -74,12 +76,20 @@ def load_machine(path: str | Path = "vertical_5axis.toml") -> Machine:
 
 
 def load_shop(path: str | Path = "simulated_shop.toml") -> SimulatedMachine:
-    """Read what is wrong with a simulated machine, its clamping and its probe. Raises InputError."""
+    """Read what is wrong with a simulated machine, its clamping and its probe. Raises InputError.
+
+    Returns the checked content of the file, with its keys as attributes (docs/machine_files.md): what ``shop=`` of
+    :meth:`Program.mill` and others takes.
+    """
     return load_simulated_machine(find(str(path)))
 
 
 def load_probe(path: str | Path = "probe.toml") -> Calibration:
-    """Read a calibrated probe. Raises InputError."""
+    """Read a calibrated probe. Raises InputError.
+
+    Returns the checked content of the file, with its keys as attributes, mm and degrees (docs/machine_files.md): what
+    ``probe=`` of :meth:`Member.probing` and others takes.
+    """
     return load_calibration(find(str(path)))
 
 

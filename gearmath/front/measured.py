@@ -142,21 +142,24 @@ class Measurement(Shown):
     def share_stock(self, advance: bool = False, least: float = 0.0) -> Stock:
         """How the precut blank that was measured must stand so that both flanks share its stock [rad, mm].
 
-        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Raises InputError.
+        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Returns ``turn``
+        [rad], ``advance`` [mm], and by flank ``least``, ``mean`` and ``most`` of the stock then, and ``least_before``
+        [mm]. Raises InputError.
         """
         from gearmath.quality.correction.stock import share_stock
 
         with about(self.source):
             return share_stock(self.member.spec, self.member.name, self.file, advance, least)
 
-    def report(self, path: str | Path, *mate: Measurement, **head: str) -> Path:
+    def report(self, path: str | Path, *mate: Measurement, again: Sequence[Measurement] = (), **head: str) -> Path:
         """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
 
-        ``head``: part_number, date, operator, machine, probe. Raises InputError where the mate is of the same member.
+        ``again``: members measured again after the correction. ``head``: part_number, date, operator, machine, probe.
+        Returns the path. Raises InputError where the mate is of the same member, or ``again`` is of another.
         """
         from gearmath.front.judged import inspection
 
-        sheet = inspection((self, *mate), [head] * (1 + len(mate)))
+        sheet = inspection((self, *mate), [head] * (1 + len(mate)), again)
         write_text(Path(path), sheet.html)
         return Path(path)
 

@@ -125,7 +125,9 @@ class Program(Shown):
     def judge(self, milled: Measurement | None = None, begin: Begin = silent) -> Judgement:
         """What the machine must not run: travel, speed, collisions, modes, metal that is left or gouged.
 
-        On a machine without errors. ``milled`` is what :meth:`mill` has found of such a machine, to be asked once.
+        Returns ``faults`` and ``remarks``, a sentence each, and ``left``, what is left of the metal: ``left.tolerance``
+        [mm] is how far flanks may deviate. On a machine without errors. ``milled`` is what :meth:`mill` has found of
+        such a machine, to be asked once.
         """
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         known = None if milled is None else milled.file
@@ -151,7 +153,9 @@ class Program(Shown):
     ) -> MillingReport:
         """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface.
 
-        Flanks may have a ``flank_tolerance`` [mm] of their own.
+        Flanks may have a ``flank_tolerance`` [mm] of their own. Returns ``surfaces`` with the ``lowest`` and
+        ``highest`` place of each [mm], those of them that are ``gouges`` or ``uncut``, ``collisions``, and in
+        ``timing`` seconds and the speed of each axis.
         """
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
