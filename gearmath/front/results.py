@@ -9,7 +9,7 @@ from gearmath.front.contact import Contact
 from gearmath.front.corrected import Correction
 from gearmath.front.design import Blank, FoundSettings, PairDesign
 from gearmath.front.flanks import FlankSurface, Tooth
-from gearmath.front.hobbing import HobbedGear, HobbedThread
+from gearmath.front.hobbed import HobbedGear, HobbedThread
 from gearmath.front.judged import Uncertainty
 from gearmath.front.measured import Evaluation
 from gearmath.front.probing import ProbingProgram
