@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from gearmath.bevel.flank import blank_grid
-from gearmath.bevel.grid import listed_grid
-from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import InputError, about
 from gearmath.front.changed import changed, check_keys, shallow
 from gearmath.front.flanks import FlankSurface, Tooth
@@ -111,6 +109,9 @@ class Member(Shown):
         >>> gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave").point.shape
         (5, 9, 3)
         """
+        from gearmath.bevel.grid import listed_grid
+        from gearmath.bevel.nominal_file import nominal_flank
+
         _check_flank(flank)
         if places is None:
             at = blank_grid(self.spec, *(grid or (5, 9)), margin)
