@@ -24,6 +24,14 @@ def check_place(path: Path) -> None:
         raise InputError(f"{path}: cannot be written: Permission denied")
 
 
+def check_writable(path: Path) -> None:
+    """Whether a file that is there can be written where it is. Raises InputError naming the file where it cannot."""
+    try:
+        os.close(os.open(path, os.O_WRONLY))  # not os.access, which knows no file system that is mounted to be read
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+
+
 def write_text(path: Path, text: str) -> None:
     """Write ``text`` (UTF-8, LF) to ``path`` in one step. Raises InputError if the place cannot be written."""
     write_bytes(path, text.encode("utf-8"))

@@ -86,6 +86,14 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
         raise InputError(f"{error}{slip(str(error))}") from error
 
 
+def check_computed(pair: BevelSet) -> None:
+    """The same for settings that were computed: no single one of them is to blame. Raises InputError."""
+    try:
+        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members})
+    except Misfit as misfit:
+        raise InputError(str(misfit)) from misfit
+
+
 def check_corrected(pair: BevelSet) -> None:
     """Raise ComputationError where corrected settings cut no pair: what was measured is not to blame."""
     try:

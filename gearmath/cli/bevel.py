@@ -91,19 +91,22 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     one = member_of(pair, member)
     with about(pair.source):
         made = one.tooth(columns)
-        mates, note = pair.mates(), pair.edge_note()
+        mates, notes = pair.mates(), [made.note, pair.edge_note()]
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures
     if as_json:
         echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))
         return
     click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
     click.echo(
-        "thicknesses are transverse arcs: mean_ at the mean point of the pitch cone, reference_ at the middle of the"
+        "thicknesses, top lands and root widths are transverse arcs ('gearmath design' and the summary sheet have the"
     )
-    click.echo("grid of flank files, where 'gearmath evaluate' measures")
+    click.echo(
+        "normal top land): mean_ at the mean point of the pitch cone, reference_ at the middle of the grid of flank"
+    )
+    click.echo("files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
-    if note:
+    for note in filter(None, notes):
         click.echo(f"note: {note}")
     click.echo(f"{target}: {triangles} triangles")
 

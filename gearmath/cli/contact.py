@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from gearmath.bevel.contact.system import Assembly, System
 
 _FINEST, _COARSEST = 0.01, 15.0
-#: Change of the shaft angle [degree] beyond which no assembly is meant.
-_MOST_DEG = 10.0
 _LIMIT_TRIALS = 10
 #: Figures of a measured pair with an uncertainty: key, words and unit.
 _SURE = (
@@ -94,13 +92,13 @@ def contact(
 
 
 def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
-    from gearmath.bevel.contact.system import MOST_MM
+    from gearmath.bevel.contact.system import MOST_DEG, MOST_MM
 
     for name, value, most, unit in (
         ("--v", v, MOST_MM, "mm"),
         ("--h", h, MOST_MM, "mm"),
         ("--j", j, MOST_MM, "mm"),
-        ("--shaft", shaft, _MOST_DEG, "degrees"),
+        ("--shaft", shaft, MOST_DEG, "degrees"),
     ):
         if not abs(value) <= most:
             raise InputError(f"{name} {value:g}: must lie between -{most:g} and {most:g} {unit}")

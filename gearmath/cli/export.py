@@ -42,11 +42,18 @@ def teensy(machine: str, folder: Path) -> None:
 
     Firmware, the machine's constants, wiring diagram and README. The folder's name becomes the sketch's name.
     """
+    from gearmath.export.reservations import reservations
+    from gearmath.export.teensy import machine_of
     from gearmath.front.hobbing import export_teensy
     from gearmath.front.machines import load_hobber
 
-    names = export_teensy(load_hobber(machine), folder)
+    hobber, before = load_hobber(machine), machine_of(folder)
+    names = export_teensy(hobber, folder)
     click.echo(f"{folder}: {len(names)} files")
+    if before is not None and before != hobber.name:
+        click.echo(f"  they replace those of {before!r}")
+    for said in reservations(hobber):
+        click.echo(f"  {said.replace('`', '')}")
 
 
 @export.command()

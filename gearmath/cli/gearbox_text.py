@@ -29,14 +29,15 @@ def simulation_text(result: Simulation, job: GearboxJob) -> str:
     """What became of the compiled rule and of the floating one."""
     feed = f" and {job.feed_numerator}/{job.steps_denominator} of the feed" if job.feed_numerator else ""
     moved = f" and the feed at {result.feed_position}" if job.feed_numerator else ""
+    leading, driven = ("spindle", "lead screw") if isinstance(job, ThreadPlan) else ("hob", "table")
     return "\n".join(
         [
             f"{result.edges} edges, {result.pattern}, {job.steps_numerator}/{job.steps_denominator} "
-            f"steps per count{feed}; the hob ends at count {result.encoder_position}{moved}",
+            f"steps per count{feed}; the {leading} ends at count {result.encoder_position}{moved}",
             f"  compiled integer rule    worst error {float(result.worst_error):10.4f} steps, "
-            f"exactly {result.worst_error}; the table ends at step {result.position}",
+            f"exactly {result.worst_error}; the {driven} ends at step {result.position}",
             f"  float32 rule             worst error {float(result.float_worst_error):10.4f} steps; "
-            f"the table ends at step {result.float_position}",
+            f"the {driven} ends at step {result.float_position}",
         ]
     )
 
@@ -48,11 +49,6 @@ def _rates(job: GearboxJob, what: str) -> Iterator[str]:
     yield f"  {what:7s}{job.rpm:9.1f} rpm   {job.hob_rpm_percent:5.1f} % of the limit {most}"
     yield f"  edges  {job.edge_rate_hz:9.0f} Hz    {job.edge_rate_percent:5.1f} % of the limit"
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
-    if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
-        yield (
-            f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}: write at "
-            "most that in the machine file for it, and export anew"
-        )
 
 
 def _motor(job: GearboxJob, machine: HobbingMachine) -> Iterator[str]:
@@ -105,6 +101,11 @@ def _settable(pitch: Fraction) -> bool:
 def _gear(job: GearboxPlan) -> Iterator[str]:
     shift = f", profile shift {job.profile_shift:g}" if job.profile_shift else ""
     yield f"{job.machine}: {counted(job.teeth, 'tooth')}{shift}, {job.hob_starts}-start {job.hob_hand}-hand hob"
+    if not job.carried_at_every_speed:
+        yield (
+            f"  REFUSED by the firmware as the machine file is: with limits.hob_rpm above {int(job.highest_rpm)} its "
+            "motor needs too many steps/s; write at most that for it, and export anew. What follows is for that speed."
+        )
     yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
     if job.helix is None:
         return

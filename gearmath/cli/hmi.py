@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,15 +38,18 @@ def hmi(control: str | None, insecure: bool, store_file: Path, host: str, port: 
     except ImportError as error:
         raise InputError(f"{error.name} is missing: install it with pip install '.[hmi]'") from error
     from gearmath.control.store import MeasurementStore
-    from gearmath.files import check_place
+    from gearmath.files import check_place, check_writable
     from gearmath.hmi.alarm_book import AlarmBook
     from gearmath.hmi.state import Shared
 
     check_place(store_file)
     if store_file.exists():
-        if not os.access(store_file, os.W_OK):  # a run would find out when the machine stands ready
-            raise InputError(f"{store_file}: cannot be written: Permission denied")
+        is_empty = store_file.is_file() and not store_file.stat().st_size
+        if store_file.is_file():
+            check_writable(store_file)  # a run would find out when the machine stands ready
         MeasurementStore.open(store_file, create=False).close()
+        if is_empty:
+            click.echo(f"{store_file}: was empty, and is a new measurement store now")
     alarms = store_file.with_name(f"{store_file.stem}_alarms.json")
     shared = Shared(store_file, book=AlarmBook(alarms))
     if control is not None:

@@ -21,9 +21,14 @@ def trend_figure(found: Comparison) -> Figure:
     courses: dict[str, dict[str, list[tuple[float | None, float | None]]]] = {}
     for row in found.figures:
         values = list(zip(row.sizes, row.uncertainties, strict=True))
-        courses.setdefault(row.name.removesuffix("_um").replace("_", " "), {})[row.flank] = values
+        courses.setdefault(figure_title(row.name), {})[row.flank] = values
     return course_figure(_title(found), [each.run.id for each in found.runs], courses)
 
 
 def _title(found: Comparison) -> str:
     return f"{found.runs[0].name}, runs {', '.join(str(each.run.id) for each in found.runs)}"
+
+
+def figure_title(name: str) -> str:
+    """What stands over the course of a figure."""
+    return name.removesuffix("_um").replace("_", " ")

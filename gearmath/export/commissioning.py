@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from fractions import Fraction
 
+from gearmath.export.full_rate import full_rate_of_a_gear, full_rate_of_a_thread
 from gearmath.export.markdown import bullets
+from gearmath.export.reservations import SMALL, fewest_teeth
 from gearmath.gearbox.job import TRIP
 from gearmath.specs.hobbing import HobbingMachine
 from gearmath.specs.motion_limits import TRIAL_TEETH
-
-#: Steps that a step motor loses at the least, in full steps: it falls into the next place of the same phase.
-_SLIP = 4
-#: Most starts of a thread.
-_STARTS = 10
-#: A pinion that is cut on such machines.
-_SMALL = 6
 
 
 def commissioning(machine: HobbingMachine) -> Iterator[str]:
@@ -62,6 +56,25 @@ def _standing(machine: HobbingMachine) -> Iterator[str]:
         f"more or less. `decoder mode?` means {lines}; `OK, but backwards` asks for channels A and B to be exchanged, "
         "or `invert = true` under `[encoder]`."
     )
+    if machine.encoder.has_ls7184:
+        yield _output_pulse(machine)
+
+
+def _output_pulse(machine: HobbingMachine) -> str:
+    """How the trimmer in the place of RB1 is set."""
+    rate = machine.max_edge_rate
+    low, high = (5 * (1 - rate * pulse * 1e-6) for pulse in (2.0, 1.0))
+    other = " RB2 at U4 gets the same value." if machine.feed is not None else ""
+    return (
+        "A trimmer in the place of RB1: with an oscilloscope at pin 8 (CLK) of U3, ground at pin 3, turn the hob by "
+        "hand, and the trimmer down until each pulse, which is low, lasts 1 us to 2 us. With a multimeter alone, DC "
+        "volts at pin 8 against pin 3: 5.00 V while the encoder stands. Power of the spindle on, that of the motor "
+        f"off, and no job: at {machine.limits.hob_rpm:g} rpm, {rate} edges/s, the mean is {high:.2f} V for pulses of "
+        f"1 us and {low:.2f} V for 2 us; turn the trimmer down until it lies between. At half the speed it must have "
+        "fallen half as far from 5.00 V: if it has fallen further, edges are lost at the full speed, and the pulse "
+        "is still too long. Everything off, measure trimmer and resistor together, and solder the nearest fixed "
+        f"resistor in.{other}"
+    ).replace("the hob by hand", f"the {_leading(machine)} by hand")
 
 
 def _moving(machine: HobbingMachine) -> Iterator[str]:
@@ -93,13 +106,14 @@ def _together(machine: HobbingMachine) -> Iterator[str]:
     """What is tried with both sides turning."""
     lathe, leading = machine.profile == "lathe", _leading(machine)
     yield _direction_of_a_thread() if lathe else _direction_of_a_gear(machine)
-    yield _full_rate_of_a_thread(machine) if lathe else _full_rate_of_a_gear(machine)
+    yield full_rate_of_a_thread(machine) if lathe else full_rate_of_a_gear(machine)
     if machine.pins.index is not None:
         turning = leading if machine.encoder.belt == 1 else "encoder, which are not those of the " + leading
         yield (
-            f"Index: in the same job let the {leading} run for a minute at about 100 rpm. `Checked` on the third page "
-            f"(two detents) must count every turn of the {turning}. If it stays at 0, Z of the encoder does not reach "
-            f"pin {machine.pins.index}; if `FAULT hob encoder` comes, edges are lost: look at cable, shield, coupling."
+            f"Index: in the same job let the {leading} run for a minute at about 100 rpm. `Checked` on the third "
+            f"page (two detents) must count every turn of the {turning}. If it stays at 0, Z of the encoder does not "
+            f"reach pin {machine.pins.index}, or its pulse is the other way round: write the other `index_active`; "
+            "if `FAULT hob encoder` comes, edges are lost: look at cable, shield, coupling."
         )
     if machine.feed is not None:
         yield _direction_of_the_feed(machine)
@@ -147,74 +161,17 @@ def _direction_of_the_feed(machine: HobbingMachine) -> str:
     )
 
 
-def _full_rate_of_a_gear(machine: HobbingMachine) -> str:
-    """The firmware takes the fewest teeth whose steps keep the rate up to the highest speed of the hob."""
-    teeth = _fewest_teeth(machine)
-    rate = float(Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts / teeth)
-    return (
-        f"The motor at its full rate: job of {teeth} {'teeth' if teeth > 1 else 'tooth'}, no blank, a line across "
-        f"table and frame, `Start?` yes with the hob at rest. Run the hob up to {machine.limits.hob_rpm:g} rpm: the "
-        f"motor makes {rate:.0f} steps/s then, of `step_rate_hz = {machine.max_step_rate}`. "
-        f"{_up(machine, rate, 'hob')} Leave it there for a minute, switch the hob off, and turn it on by "
-        "hand until the second page shows `Table` "
-        f"0.00 deg: the line must be back. {_slip(machine, 'table')}"
-    )
-
-
-def _fewest_teeth(machine: HobbingMachine) -> int:
-    """The fewest teeth that the firmware takes: they keep the rate up to the speed at which it trips."""
-    at_one = Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts * TRIP
-    return max(1, math.ceil(at_one / machine.max_step_rate))
-
-
 def _pinions(machine: HobbingMachine) -> Iterator[str]:
     """What must be changed for gears of fewer teeth."""
-    teeth = _fewest_teeth(machine)
-    if teeth <= _SMALL:
+    teeth = fewest_teeth(machine)
+    if teeth <= SMALL:
         return
-    rpm = math.floor(machine.max_step_rate * _SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
+    rpm = math.floor(machine.max_step_rate * SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
     yield (
         f"With {machine.hob_starts} start{'s' * (machine.hob_starts > 1)} of the hob the firmware takes {teeth} teeth "
         f"and more: at {machine.limits.hob_rpm:g} rpm fewer need more than {machine.max_step_rate} steps/s, and the "
-        f"start says `too many steps/s` and `Set limit`. Write that limit into the machine file, for {_SMALL} teeth "
+        f"start says `too many steps/s` and `Set limit`. Write that limit into the machine file, for {SMALL} teeth "
         f"`hob_rpm = {rpm}`, export again, and do not run the hob faster."
-    )
-
-
-def _full_rate_of_a_thread(machine: HobbingMachine) -> str:
-    """A lead of whole turns of the screw per turn of the spindle, as few as reach the rate."""
-    most = Fraction(machine.max_step_rate) * 60 / TRIP  # steps a minute
-    starts = min(_STARTS, max(1, math.ceil(most / machine.motor_steps / Fraction(machine.limits.hob_rpm))))
-    rpm = math.floor(min(Fraction(machine.limits.hob_rpm), most / machine.motor_steps / starts))
-    rate = float(machine.motor_steps * starts * rpm / 60)
-    pitch = machine.lead_screw_pitch
-    return (
-        f"The motor at its full rate: half nut open, job of a right-hand thread with the pitch of the lead screw, "
-        f"{float(pitch):.6g} mm or {float(Fraction(127, 5) / pitch):.6g} per inch, {starts} start{'s' * (starts > 1)}. "
-        f"Bring a mark on the spindle and one on the lead screw up, `Start?` yes with the spindle at rest. Run it up "
-        f"to {rpm} rpm: the motor makes {rate:.0f} steps/s then, of `step_rate_hz = {machine.max_step_rate}`. "
-        f"{_up(machine, rate, 'spindle')} Leave it there for a minute, switch it off, and turn the spindle on by hand "
-        f"to its mark: that of the lead screw must be up too. {_slip(machine, 'lead screw')}"
-    )
-
-
-def _up(machine: HobbingMachine, rate: float, leading: str) -> str:
-    seconds = rate / machine.limits.acceleration_hz_per_s
-    return (
-        f"Let the {leading} take {seconds:.1f} s or more to that speed, by its inverter or in steps of speed; one that "
-        "starts quicker runs away from the motor, and `FAULT table lags` comes."
-    )
-
-
-def _slip(machine: HobbingMachine, driven: str) -> str:
-    """What lost steps look like, and what to do."""
-    lower = "lower `step_rate_hz` of the machine file by a quarter, export again, and repeat as its README says."
-    if machine.drive.pulses is not None or machine.driver.timing.closed_loop:
-        return f"If it is not, or the drive reports an alarm, {lower}"
-    degrees = _SLIP * 360 * (machine.drive.microsteps or 1) / float(machine.motor_steps)
-    return (
-        f"A step motor slips by {_SLIP} full steps at the least, {degrees:.2g} degrees of the {driven}, "
-        f"{2 * math.pi * 50 * degrees / 360:.2g} mm at a radius of 50 mm. If it has slipped or stalled, {lower}"
     )
 
 
@@ -249,8 +206,10 @@ _GEAR = (
     "Feed 0.1 to 0.3 mm per turn of the table for small modules. Conventional cut where the feed has play, climb cut "
     "where it has none. Climb is where the teeth of the hob, as they cut, move against the way in which the hob is "
     "fed.",
-    "Start hob and gearbox clear of the blank, wait for `In phase`, then feed in. At the end feed clear of the blank "
-    "before you answer `Stop?`.",
+    "Clear of the blank switch the hob on, answer `Start?` when it has its speed, wait for `In phase`, then feed in. "
+    "At the end feed clear of the blank, answer `Stop?`, and only then switch the hob off. So it does not matter how "
+    "quickly the hob starts and stops. A job that is too fast to be engaged (`gearmath gearbox plan` says so) starts "
+    "with the hob at rest, and the hob must take as long as the run-up of that plan, to start and to stop.",
     "Count the teeth, and measure the span that `gearmath gearbox plan` gives. Too thick by s: cut deeper by 1.46 s "
     "for a hob of 20 degrees, by 2.00 s for one of 14.5, which is s/(2 sin of the pressure angle).",
 )

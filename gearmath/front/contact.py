@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.bevel.contact.mesh import Mesh as Run
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.report import SIDES, figures, shown_runs, tolerance_figures
-from gearmath.bevel.contact.system import Assembly
+from gearmath.bevel.contact.system import MOST_DEG, MOST_MM, Assembly
 from gearmath.bevel.contact.tolerance import SEARCHES
 from gearmath.bevel.contact.tolerance import tolerance as search
 from gearmath.errors import InputError, about
@@ -88,6 +88,14 @@ def contact(
     for side in sides:
         if side not in SIDES:
             raise InputError(f"sides: {side!r}: must be of {', '.join(SIDES)}")
+    for what, value, most, unit in (
+        ("v", v, MOST_MM, "mm"),
+        ("h", h, MOST_MM, "mm"),
+        ("j", j, MOST_MM, "mm"),
+        ("shaft", shaft, MOST_DEG, "degrees"),
+    ):
+        if not abs(value) <= most:
+            raise InputError(f"{what} = {value:g}: must lie between -{most:g} and {most:g} {unit}")
     for name in MEMBERS:
         pair.spec.member(name)
     flanks: dict[tuple[str, str], MeasuredFlank | None] = {}

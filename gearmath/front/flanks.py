@@ -83,6 +83,13 @@ class Tooth(Shown):
     space: ToothSpace
     figures: dict[str, float]
 
+    @property
+    def note(self) -> str:
+        """What to say of cutters for one flank whose far side cuts into the other one; else empty."""
+        from gearmath.bevel.design.point_widths import far_sides_note
+
+        return far_sides_note(self.member.spec, self.space)
+
     def to_stl(self, path: str | Path, whole_member: bool = True) -> int:
         """Write the closed solid of the member, or the surface of one space, as binary STL in mm; its triangles."""
         from gearmath.bevel.solid import member_triangles, space_triangles, write_stl

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Protocol
 from weakref import WeakKeyDictionary
 
 from nicegui import Client, ui
@@ -11,17 +12,60 @@ from nicegui import Client, ui
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.messages import Text
 from gearmath.hmi.state import Shared
-from gearmath.hmi.widgets import LOOK, Message, button, row, say
+from gearmath.hmi.widgets import LOOK, Message, button, note, row, say
 
 #: The question that is open on each page.
 _ASKED: WeakKeyDictionary[Client, ui.dialog] = WeakKeyDictionary()
 
 
-def allow(why: str, reason: ui.label, *buttons: ui.button) -> None:
-    """Let buttons be pressed where nothing speaks against it; else ``reason`` beside them says what does."""
-    for one in buttons:
-        one.enabled = not why
-    reason.text, reason.visible = why, bool(why)
+class _Add(Protocol):
+    def __call__(
+        self,
+        missing: Callable[[], str | None],
+        label: str,
+        pressed: Callable[[], object],
+        icon: str = "",
+        primary: bool = False,
+    ) -> None: ...
+
+
+@contextmanager
+def buttons() -> Iterator[_Add]:
+    """Buttons in a row, each pressed only while nothing is ``missing``; what is, stands beside them once.
+
+    What is missing is None where the page says it elsewhere, such as beside the bar of what is under way.
+    """
+    made: list[tuple[ui.button, Callable[[], str | None]]] = []
+
+    def look() -> None:
+        found = [(one, missing()) for one, missing in made]
+        for one, why in found:
+            one.enabled = why == ""
+        said.text = " ".join(dict.fromkeys(why for _, why in found if why))
+        said.visible = bool(said.text)
+
+    def add(
+        missing: Callable[[], str | None],
+        label: str,
+        pressed: Callable[[], object],
+        icon: str = "",
+        primary: bool = False,
+    ) -> None:
+        def press() -> None:
+            if missing() == "":
+                pressed()
+            look()  # at once: the second of two quick clicks finds what the first has left
+
+        one = button(label, press, icon, primary)
+        made.append((one, missing))
+
+    with row():
+        yield add
+        said = note("")
+        for one, _ in made:
+            one.props["aria-describedby"] = f"c{said.id}"
+    look()
+    ui.timer(LOOK, look)
 
 
 def watch(text: Text, look: Callable[[], object], seconds: float = LOOK) -> None:

@@ -2,81 +2,52 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any, Protocol
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from functools import partial
+from typing import Any
 
 from nicegui import ui
 
+from gearmath.errors import ComputationError, InputError
 from gearmath.hmi import widgets
 from gearmath.hmi.desk import Kept
 from gearmath.hmi.drawing import translated
 from gearmath.hmi.messages import Text, messages
+from gearmath.hmi.number_field import NumberField
 from gearmath.hmi.state import Shared
 from gearmath.hmi.work import Progress
 
 
 def follow(key: Callable[[], Hashable], draw: Callable[[], object]) -> None:
-    """Draw now, and anew whenever the key is another, whoever changed it."""
+    """Draw now, and anew whenever the key is another, whoever changed it; or say why that cannot be."""
     place = ui.element("div").classes("gm-follow")
     seen: list[Hashable] = []
 
     def look() -> None:
-        now = key()
+        made = draw
+        try:
+            now = key()
+        except (InputError, ComputationError) as error:
+            now, made = str(error), partial(_refused, error)
         if seen and seen[0] == now:
             return
         seen[:] = [now]
         place.clear()
         with place:
-            draw()
+            try:
+                made()
+            except (InputError, ComputationError) as error:
+                _refused(error)
 
     look()
     ui.timer(widgets.LOOK, look)
 
 
-class _Add(Protocol):
-    def __call__(
-        self,
-        missing: Callable[[], str],
-        label: str,
-        pressed: Callable[[], object],
-        icon: str = "",
-        primary: bool = False,
-    ) -> None: ...
+def _refused(error: Exception) -> None:
+    widgets.Message(widgets.words_of(error), "error")
 
 
-@contextmanager
-def buttons() -> Iterator[_Add]:
-    """Buttons in a row, each pressed only while nothing is ``missing``; what is, stands beside them once."""
-    made: list[tuple[ui.button, Callable[[], str]]] = []
-
-    def look() -> None:
-        found = [(one, missing()) for one, missing in made]
-        for one, why in found:
-            one.enabled = not why
-        said.text = " ".join(dict.fromkeys(why for _, why in found if why))
-        said.visible = bool(said.text)
-
-    def add(
-        missing: Callable[[], str], label: str, pressed: Callable[[], object], icon: str = "", primary: bool = False
-    ) -> None:
-        def press() -> None:
-            if not missing():
-                pressed()
-            look()  # at once: the second of two quick clicks finds what the first has left
-
-        made.append((widgets.button(label, press, icon, primary), missing))
-
-    with widgets.row():
-        yield add
-        said = widgets.note("")
-        for one, _ in made:
-            one.props["aria-describedby"] = f"c{said.id}"
-    look()
-    ui.timer(widgets.LOOK, look)
-
-
-def refused(text: Text, fields: Iterable[widgets.NumberField], said: str = "blocks.refused") -> str:
+def refused(text: Text, fields: Iterable[NumberField], said: str = "blocks.refused") -> str:
     """The sentence ``said`` with the names of the fields that hold what is refused; nothing where none does."""
     names = "; ".join(one.label for one in fields if one.is_refused)
     return text(said, fields=names) if names else ""
@@ -99,13 +70,14 @@ def kept(
 ) -> None:
     """What is computed for a key, as soon as it is there; the progress until then, or why there is nothing.
 
-    ``compute`` gives the computation for the key of now; a key of None has none, and ``empty`` is said. While
-    ``outdated`` says that something else is typed than what was computed, that is said and nothing is shown.
+    ``name`` says what is computed; ``compute`` gives the computation for the key of now; a key of None has none, and
+    ``empty`` is said. While ``outdated`` says that something else is typed than what was computed, that is said and
+    nothing is shown.
     """
 
     def state() -> tuple[Hashable, bool, int, str]:
         now = key()
-        return now, now is not None and found.look(now, name, compute()), found.work.count, outdated()
+        return now, now is not None and found.look(now, compute()), found.work.count, outdated()
 
     def show() -> None:
         now, ended, _, why = state()
@@ -115,7 +87,7 @@ def kept(
             if empty:
                 widgets.note(empty)
         elif not ended:
-            widgets.progress(text, found.work)
+            widgets.progress(text, found.work, lambda: name)
         elif found.work.error:
             widgets.Message(text.quoted(found.work.error), "error")
         elif found.work.result is None:
@@ -133,15 +105,15 @@ def facts(rows: Iterable[tuple[str, str, str]]) -> None:
         widgets.fact(label, value, unit)
 
 
-def chart(text: Text, svg: str, label: str, across: bool = False) -> None:
+def chart(text: Text, svg: str, label: str, across: bool = False, names: Mapping[str, str] | None = None) -> None:
     """A drawing of the package under its label, its words in the language of the page, on white.
 
-    One of many parts is moved ``across`` where the screen is narrow, and stays legible.
+    One of many parts is moved ``across`` where the screen is narrow, and stays legible. ``names`` are further words.
     """
     with ui.element("figure").classes("gm-chart gm-across" if across else "gm-chart"):
         with ui.element("figcaption"):
             ui.label(label).classes("gm-inline gm-note")
-        widgets.picture(translated(svg, words_of_charts(text)), label).classes("gm-paper")
+        widgets.picture(translated(svg, words_of_charts(text) | dict(names or {})), label).classes("gm-paper")
 
 
 def words_of_charts(text: Text) -> dict[str, str]:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from gearmath.errors import InputError
 from gearmath.files import read_text
+from gearmath.front.machines import load_hobber, load_machine, load_probe
+from gearmath.front.sets import load_set
+from gearmath.specs.toml import find
 
 #: A key, with dots between tables, that a file of each kind has, and no other; one of these.
 _KEYS = {
@@ -17,6 +20,12 @@ _KEYS = {
     "hobber": ("encoder.lines",),
     "machine": ("axes.X",),
     "calibration": ("tip_radius",),
+}
+_READ: dict[str, Callable[[Path], object]] = {
+    "gear_set": load_set,
+    "hobber": load_hobber,
+    "machine": load_machine,
+    "calibration": load_probe,
 }
 #: Larger files are none of these.
 _LARGEST = 1_000_000
@@ -30,6 +39,19 @@ def files_of(kind: str, folder: Path) -> dict[str, str]:
     here = {str(path): path.name for path in _toml(folder) if _is(kind, path)}
     packaged = Path(str(resources.files("gearmath") / "data"))
     return here | {path.name: f"{path.name} *" for path in _toml(packaged) if _is(kind, path)}
+
+
+def check(kind: str, name: str) -> None:
+    """Read a file of a ``kind`` that was chosen. Raises InputError for what is none, or is damaged."""
+    _READ[kind](find(name))
+
+
+def changed_at(name: str) -> int:
+    """When a file, or the bundled one of this name, was written last [ns]; 0 where it is not there."""
+    try:
+        return find(name).stat().st_mtime_ns
+    except (InputError, OSError):
+        return 0
 
 
 def _toml(folder: Path) -> list[Path]:

@@ -11,6 +11,7 @@ from typing import Any
 from gearmath.errors import ComputationError, InputError
 from gearmath.front.member import Member
 from gearmath.front.sets import GearSet, load_set
+from gearmath.hmi.catalog import changed_at
 from gearmath.hmi.flank_view import FlankView, view_of_run, view_of_settings
 from gearmath.hmi.gear_settings import Place, changes, with_edits
 from gearmath.hmi.hobbing_job import HobbingWish
@@ -28,11 +29,11 @@ class Kept:
     work: Work = field(default_factory=Work)
     key: Hashable = None
 
-    def look(self, key: Hashable, name: str, compute: Callable[[Progress], Any]) -> bool:
+    def look(self, key: Hashable, compute: Callable[[Progress], Any]) -> bool:
         """Whether the computation for ``key`` has ended; begins it where it has not begun."""
         if not self.work.running and self.key != key:
             self.key = key
-            self.work.start(name, compute)
+            self.work.start("", compute)
         return self.key == key and not self.work.running
 
     def has(self, key: Hashable) -> bool:
@@ -104,7 +105,7 @@ def draft(path: Path, name: str, typed: dict[Place, float], runs: JudgedRuns, ru
     ``run`` is the run whose deviations are shown, None for those of the settings. Raises InputError for a file that is
     no pair, and for one without this member.
     """
-    member = _loaded(path, path.stat().st_mtime_ns).member(name)
+    member = _loaded(path, changed_at(str(path))).member(name)
     typed = changes(member, typed)
     refused: dict[Place, str] = {}
     try:

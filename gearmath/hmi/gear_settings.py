@@ -8,6 +8,7 @@ from pathlib import Path
 
 from gearmath.bevel.pair import check_pair
 from gearmath.front.member import Member
+from gearmath.hmi.numbers import Limits
 from gearmath.specs.bevel_set import FLANKS, SETTINGS
 from gearmath.specs.cut import Settings
 from gearmath.specs.set_text import save_corrected
@@ -24,14 +25,13 @@ _UNITS = {"mm": "mm", "degree": "°", None: ""}
 
 @dataclass(frozen=True)
 class SettingField:
-    """One field: ``value`` as the file has it [``unit``], within ``low`` and ``high`` of the model of the set."""
+    """One field: ``value`` as the file has it [``unit``], within the ``limits`` of the model of the set."""
 
     flanks: tuple[str, ...]
     key: str
     unit: str
     value: float
-    low: float
-    high: float
+    limits: Limits
 
     @property
     def place(self) -> Place:
@@ -44,19 +44,23 @@ def setting_fields(member: Member) -> list[SettingField]:
     found = []
     for key in SETTINGS:
         shared = key in member.spec.shared_settings
-        low, high = setting_limits(key)
+        limits = setting_limits(key)
         for flanks in (FLANKS,) if shared else tuple((flank,) for flank in FLANKS):
             value = getattr(member.spec.flank(flanks[0]), key)
-            found.append(SettingField(flanks, key, _UNITS[unit_of(Settings, key)], value, low, high))
+            found.append(SettingField(flanks, key, _UNITS[unit_of(Settings, key)], value, limits))
     return found
 
 
-def setting_limits(key: str) -> tuple[float, float]:
+def setting_limits(key: str) -> Limits:
     """Least and largest value of a setting [mm, degrees, none], as the model of the file has them."""
-    marks = Settings.model_fields[key].metadata
-    low = next(bound for mark in marks for name in ("ge", "gt") if (bound := getattr(mark, name, None)) is not None)
-    high = next(bound for mark in marks for name in ("le", "lt") if (bound := getattr(mark, name, None)) is not None)
-    return float(low), float(high)
+    found = {name: bound for mark in Settings.model_fields[key].metadata for name, bound in _bounds(mark)}
+    low, high = (float(next(found[name] for name in names if name in found)) for names in (("gt", "ge"), ("lt", "le")))
+    return Limits(low, high, above="gt" in found, below="lt" in found)
+
+
+def _bounds(mark: object) -> list[tuple[str, float]]:
+    """What a mark of a model's field says of its least and largest value."""
+    return [(name, getattr(mark, name)) for name in ("gt", "ge", "lt", "le") if hasattr(mark, name)]
 
 
 def with_edits(member: Member, edits: Edits) -> Member:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import re
 import zipfile
 from collections.abc import Callable, Iterator
@@ -19,16 +20,14 @@ from gearmath.gearbox.helix import STEEPEST
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.hobbed.setup import cut_and_inspect, setup
 from gearmath.gearbox.job import GearboxJob, ThreadPlan
+from gearmath.gearbox.simulation import LAST_START, MOST_EDGES
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
+from gearmath.hmi.numbers import Limits
 from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 
-#: Least and largest number of each field, by its key; those of the machine come with it.
-FIELDS: dict[str, tuple[float, float]] = {
-    "teeth": notation.teeth.domain,
-    "starts": notation.hob_starts.domain,
-    "helix": (0.0, STEEPEST),
-}
+#: Edges of a run of the step rule, and the count of the hob before it.
+EDGES, START = Limits(1, MOST_EDGES), Limits(0, LAST_START)
 #: A name within the zip: a plain file of the sketch's folder.
 _PLAIN = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,62}", re.ASCII)
 #: A feed as it is typed: 1.25 or 5/4; no power of ten, which may have more digits than there is memory.
@@ -67,6 +66,27 @@ class PlanLine:
     percent: float | None = None
 
 
+def limits(machine: HobbingMachine) -> dict[str, Limits]:
+    """What the fields of a job on a machine may hold, by their keys, as far as that does not depend on the job."""
+    starts = notation.thread_starts if machine.profile == "lathe" else notation.hob_starts
+    return {
+        "teeth": _counts(notation.teeth.domain),
+        "starts": _counts(starts.domain),
+        "helix": Limits(0.0, STEEPEST),
+        "rpm": Limits(0.0, machine.limits.hob_rpm, above=True),
+    }
+
+
+def rpm_limits(job: GearboxJob) -> Limits:
+    """The speeds at which a job keeps the limits of its machine [1/min]."""
+    return Limits(0.0, math.floor(100 * job.highest_rpm) / 100, above=True)  # what a field shows of it keeps it
+
+
+def _counts(domain: tuple[float, float]) -> Limits:
+    low, high = domain
+    return Limits(int(low), int(high))
+
+
 def planned(machine: HobbingMachine, wish: HobbingWish) -> Job:
     """The job. Raises InputError naming the limit that it would break."""
     given: dict[str, Any] = {key: getattr(wish, key) for key in ("starts", "rpm") if getattr(wish, key) is not None}
@@ -95,6 +115,12 @@ def predicted(
     made = setup(machine, wish.teeth, helix=helix, shift=wish.shift, climb=wish.cut == "climb", **given)
     found = cut_and_inspect(made, made.train.rule, progress)
     return tuple(found.classes), found.accuracy_class
+
+
+def figure_symbol(name: str) -> str:
+    """A figure as drawings have it: f_Hα for f_H_alpha."""
+    sign, *index = name.split("_")
+    return f"{sign}_{''.join({'alpha': 'α', 'beta': 'β'}.get(part, part) for part in index)}"
 
 
 def plan_lines(job: GearboxJob) -> list[PlanLine]:

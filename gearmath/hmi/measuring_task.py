@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
-from gearmath.control.interface import Touch
+from gearmath.control.interface import ChannelState, Touch
 from gearmath.control.measuring import Measuring, check_ready
 from gearmath.control.run_start import begun, resumed
 from gearmath.control.store import MeasurementStore
@@ -28,6 +28,7 @@ class RunState(StrEnum):
     PREPARING = "preparing"
     READY = "ready"
     RUNNING = "running"
+    INTERRUPTED = "interrupted"
     HOLDING = "holding"
     HELD = "held"
     LOST = "lost"
@@ -101,7 +102,11 @@ class MeasuringTask:
             return RunState.LOST
         if self._hold:
             return RunState.HOLDING
-        return RunState.RUNNING if self._measuring.is_started else RunState.READY
+        if not self._measuring.is_started:
+            return RunState.READY
+        status = self._link.view.status
+        stands = status is not None and status.channel is ChannelState.INTERRUPTED
+        return RunState.INTERRUPTED if stands else RunState.RUNNING
 
     @property
     def touches(self) -> Mapping[int, Touch]:

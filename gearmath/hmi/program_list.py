@@ -25,18 +25,26 @@ _ANSWER, _STEP = 120.0, 0.2
 def show(shared: Shared, text: Text) -> None:
     """The list, and what may be done with the program that is chosen of it."""
     chosen: dict[str, str] = {"name": ""}
+
+    def no_milling() -> str | None:
+        if not chosen["name"]:
+            return text("programs.choose") if names.options else None  # that there is none is said above
+        return None if shared.works[_MILL].running else ""
+
+    def no_sending() -> str | None:
+        if why := _no_control(shared, text):
+            return why
+        return "" if chosen["name"] and not shared.works[_SEND].running else None
+
     with widgets.panel(text("programs.list"), wide=True):
         none = widgets.note(text("programs.none"))
         columns = [("name", "file"), ("size", "size"), ("written", "date")]
         listed = widgets.table([(name, text(f"programs.{title}")) for name, title in columns], [], key="name")
         names = widgets.choice(text("programs.file"), [], None, lambda name: pick(name or ""))
-        with widgets.row():
-            mill = widgets.button(
-                text("programs.mill"), lambda: _mill(shared, chosen["name"]), "precision_manufacturing"
-            )
+        with acting.buttons() as button:
+            button(no_milling, text("programs.mill"), lambda: _mill(shared, chosen["name"]), "precision_manufacturing")
             replace = ui.checkbox(text("programs.replace"))
-            send = widgets.button(text("programs.send"), lambda: ask_to_send(), "upload")
-        no_program, no_control = widgets.note(""), widgets.note("")
+            button(no_sending, text("programs.send"), lambda: ask_to_send(), "upload")
         _milled(text, shared, lambda: chosen["name"])
         _sent(text, shared)
         heading = widgets.note("")
@@ -77,15 +85,7 @@ def show(shared: Shared, text: Text) -> None:
             names.set_options(left, value=chosen["name"] if chosen["name"] in left else None)
         none.visible, listed.visible = not rows, bool(rows)
 
-    def may() -> None:
-        needed = "" if chosen["name"] or none.visible else text("programs.choose")
-        acting.allow(needed, no_program)
-        mill.enabled = bool(chosen["name"]) and not shared.works[_MILL].running
-        acting.allow(_no_control(shared, text), no_control)
-        send.enabled = bool(chosen["name"]) and not no_control.text and not shared.works[_SEND].running
-
     acting.watch(text, look, 4 * widgets.LOOK)
-    acting.watch(text, may)
 
 
 def _no_control(shared: Shared, text: Text) -> str:
@@ -125,7 +125,7 @@ def _milled(text: Text, shared: Shared, chosen: Callable[[], str]) -> None:
         else:
             said.show(text("shell.outdated", words=words))
 
-    widgets.progress(text, work, ended, lambda: text("programs.milling", name=work.name), is_current)
+    widgets.progress(text, work, lambda: text("programs.milling", name=work.name), ended, is_current)
 
 
 def _send(shared: Shared, name: str, replace: bool) -> None:
@@ -172,4 +172,4 @@ def _sent(text: Text, shared: Shared) -> None:
     def what() -> str:
         return text("programs.sending", name=work.name, control=control_name(text, shared))
 
-    widgets.progress(text, work, ended, what, is_current)
+    widgets.progress(text, work, what, ended, is_current)

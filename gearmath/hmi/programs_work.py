@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import lru_cache
@@ -14,6 +15,8 @@ from gearmath.front.machines import load_machine, load_probe, load_shop
 from gearmath.front.probing import probing
 from gearmath.front.programs import Program, cutting
 from gearmath.front.sets import load_set
+from gearmath.hmi.catalog import changed_at
+from gearmath.hmi.numbers import Limits
 from gearmath.hmi.state import Choice
 from gearmath.hmi.work import Progress
 from gearmath.machine.control.file_names import control_name
@@ -21,11 +24,17 @@ from gearmath.machine.control.text import decoded, readable
 from gearmath.machine.judging.dialects import known, named
 from gearmath.machine.judging.timing import timing
 from gearmath.machine.measuring.checked import ProbingChoice
-from gearmath.machine.planning.cut_plan import CuttingJob
+from gearmath.machine.planning.cut_plan import (
+    MOST_STOCK,
+    CuttingJob,
+    feed_limits,
+    spindle_limits,
+    tolerance_limits,
+)
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
+from gearmath.specs.measurement import MOST_TOUCHES
 from gearmath.specs.milling_machine import MillingMachine
-from gearmath.specs.toml import find
 from gearmath.specs.touch_csv import planned_touches
 
 #: Lines of a program that the page shows from its beginning.
@@ -105,20 +114,31 @@ def mill(folder: Path, choice: Choice, name: str, shop: str | None, progress: Pr
     return MilledProgram(name, largest, of_shop, program.faults())
 
 
-def teeth(choice: Choice) -> int:
-    """How many the chosen member has. Raises InputError where its set is refused."""
-    path = find(choice.gear_set)
-    try:
-        changed = path.stat().st_mtime_ns
-    except OSError:
-        changed = 0  # what is wrong with the file is said where it is read
-    return _teeth(choice.gear_set, choice.member, changed)
+def limits(choice: Choice, dry_run: bool) -> dict[str, Limits]:
+    """What the fields of both programs may hold for the chosen member and machine, by their keys; tolerance in µm.
+
+    Raises InputError where a file is refused.
+    """
+    files = choice.gear_set, choice.machine
+    return _limits(*files, choice.member, dry_run, *map(changed_at, files))
 
 
 @lru_cache(maxsize=8)
-def _teeth(gear_set: str, member: str, changed: int) -> int:
-    """The same of a file as it was ``changed`` last [ns]: pages ask every second, and to check a pair takes long."""
-    return load_set(gear_set).member(member).teeth
+def _limits(gear_set: str, machine: str, name: str, dry_run: bool, *changed: int) -> dict[str, Limits]:
+    """The same of files as they were ``changed`` last [ns]: pages ask all the time, and to check a pair takes long."""
+    member, on = load_set(gear_set).member(name).spec, load_machine(machine).spec
+    low, high = spindle_limits(member, name, on, dry_run)
+    finest, coarsest = tolerance_limits(member)
+    stock = Limits(0.0, MOST_STOCK)
+    return {
+        "feed": Limits(*feed_limits(on, dry_run)),
+        "spindle_rpm": Limits(low, math.floor(100 * high) / 100),  # what a field shows of it keeps it
+        "tolerance": Limits(round(1000 * finest, 9), round(1000 * coarsest, 9)),
+        "roughing_stock": stock,
+        "finishing_stock": stock,
+        "teeth": Limits(0, member.teeth),
+        "repeat": Limits(1, MOST_TOUCHES),
+    }
 
 
 def programs(folder: Path) -> list[ListedProgram]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -11,7 +11,6 @@ from nicegui import Client, ui
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.hmi.messages import Text
-from gearmath.hmi.numbers import parsed
 from gearmath.hmi.work import BROKEN, Work
 
 #: How often a page looks at the state of the server. [s]
@@ -83,94 +82,10 @@ def fact(label: str, value: str = "", unit: str = "") -> ui.label:
     """A name, its value and unit in a line of facts; returns the label of the value."""
     with ui.element("div").classes("gm-fact"):
         ui.label(label).classes("gm-name")
-        found = ui.label(value).classes("gm-value")
-        if unit:
-            ui.label(unit).classes("gm-unit")
-    return found
-
-
-class NumberField:
-    """A number with unit and limits, a whole one where ``digits`` is 0. What is out of range stays as it was typed and
-    is refused with the reason.
-
-    ``value`` is the accepted number, None while what stands in the field is refused. ``changed`` hears of each
-    accepted one, when the field is left or Enter is pressed; an ``optional`` field may be left empty, which is None.
-    """
-
-    def __init__(
-        self,
-        text: Text,
-        label: str,
-        value: float | None,
-        unit: str,
-        low: float,
-        high: float,
-        changed: Callable[[Any], object] = lambda value: None,
-        digits: int = 6,
-        optional: bool = False,
-    ) -> None:
-        self._text, self._unit, self._low, self._high = text, unit, low, high
-        self._changed, self._digits, self._optional = changed, digits, optional
-        self.label = label
-        typed = "" if value is None else self._words(value)
-        self.field = ui.input(label, value=typed, validation=self._refusal).classes("gm-number")
-        self.field.props('outlined dense hide-bottom-space inputmode="decimal" autocomplete="off"')
-        self.field.props["suffix"] = unit
-        self._hint()
-        self.value, self._why = self._parsed(typed)
-        self.field.on("change", lambda: self._leave())
-
-    def limit(self, high: float) -> None:
-        """Another upper limit, by which what stands in the field is judged anew."""
-        if high != self._high:
-            self._high = high
-            self._hint()
-            self.field.validate()
-
-    def _hint(self) -> None:
-        high = f"{self._high:.10g} {self._unit}".rstrip()
-        self.field.props["hint"] = self._text("shell.range", low=f"{self._low:.10g}", high=high)
-
-    def show(self, value: float) -> None:
-        """Another number than was typed; nothing where it stands there already."""
-        if self.value != value:
-            self.field.value = self._words(value)
-            self.value = value
-
-    def _words(self, value: float) -> str:
-        return f"{value:z.{self._digits}f}".rstrip("0").rstrip(".") if self._digits else f"{value:z.0f}"
-
-    def refuse(self, why: str) -> None:
-        """Show a reason that is known only when the whole is judged."""
-        self.value, self._why, self.field.error = None, why, why
-
-    @property
-    def is_refused(self) -> bool:
-        """Whether what stands in the field does not count."""
-        return self._why is not None
-
-    def _parsed(self, typed: str | None) -> tuple[float | None, str | None]:
-        if self._optional and not (typed or "").strip():
-            return None, None
-        return parsed(self._text, typed or "", self._low, self._high, self._unit, not self._digits)
-
-    def _refusal(self, typed: str | None) -> str | None:
-        self.value, self._why = self._parsed(typed)
-        return self._why
-
-    def _leave(self) -> None:
-        if not self.is_refused:
-            self._changed(self.value)
-
-
-def numbers(fields: Mapping[str, NumberField]) -> dict[str, float]:
-    """The values of fields by name. Raises InputError naming the first that is refused."""
-    found = {}
-    for name, one in fields.items():
-        if one.value is None:
-            one.field.validate()
-            raise Refusal(f"{one.field.props['label']}: {one.field.error}")
-        found[name] = one.value
+        with ui.element("div").classes("gm-amount"):  # they stay together where the name leaves them no room
+            found = ui.label(value).classes("gm-value")
+            if unit:
+                ui.label(unit).classes("gm-unit")
     return found
 
 
@@ -184,16 +99,34 @@ def word(label: str, value: str, hint: str) -> ui.input:
 
 
 def choice(label: str, options: Sequence[str] | dict[Any, str], value: Any, changed: Callable[[Any], object]) -> Any:
-    """One of several, by keyboard or touch."""
+    """One of several, by keyboard or touch. What ``changed`` refuses is not chosen: the one before stays."""
     given = list(options) if not isinstance(options, dict) else options
-    found = ui.select(given, label=label, value=value, on_change=lambda event: changed(event.value))
+    held = [value]
+
+    def change(chosen: Any) -> None:
+        if chosen == held[0]:
+            return
+        try:
+            changed(chosen)
+        except (InputError, ComputationError) as error:
+            say_error(error)
+            found.value = held[0]
+        else:
+            held[0] = chosen
+
+    found = ui.select(given, label=label, value=value, on_change=lambda event: change(event.value))
     return found.classes("gm-choice").props("outlined dense options-dense")
 
 
-def say_error(error: Exception) -> None:
+def words_of(error: Exception) -> str:
     """Why something failed, framed where it is in another language than the page."""
     is_foreign = ui.context.client.page.language == "de" and not isinstance(error, Refusal)
-    say(Text("de").quoted(error) if is_foreign else str(error), "error")
+    return Text("de").quoted(error) if is_foreign else str(error)
+
+
+def say_error(error: Exception) -> None:
+    """Say over the page why something failed."""
+    say(words_of(error), "error")
 
 
 def button(label: str, pressed: Callable[[], Any], icon: str = "", primary: bool = False) -> ui.button:
@@ -253,14 +186,14 @@ def table(columns: Sequence[tuple[str, str]], rows: Sequence[dict[str, Any]], ke
 def progress(
     text: Text,
     work: Work,
+    what: Callable[[], str],
     ended: Callable[[], object] = lambda: None,
-    what: Callable[[], str] | None = None,
     is_current: Callable[[], bool] = lambda: True,
 ) -> None:
     """The bar of a long computation, while it runs; ``ended`` is called when one has, and when the page is opened.
 
-    ``what`` says in the language of the page what runs, its name by default. Where the outcome is not ``is_current``,
-    the reason of a failure goes, and ``ended`` is called anew: the fields have changed since.
+    ``what`` says in the language of the page what runs: who has begun it may read another one. Where the outcome is
+    not ``is_current``, the reason of a failure goes, and ``ended`` is called anew: the fields have changed since.
     """
     with ui.element("div").classes("gm-progress") as box:
         words = ui.label()
@@ -274,7 +207,7 @@ def progress(
         box.visible = work.running
         if work.running:
             failed.show("")
-            said = text("shell.running", what=what() if what else work.name, seconds=f"{work.seconds:.0f}")
+            said = text("shell.running", what=what(), seconds=f"{work.seconds:.0f}")
             if work.remaining is not None:
                 said += f", {text('shell.remaining', seconds=f'{work.remaining:.0f}')}"
             words.text = said

@@ -14,6 +14,7 @@ _GOING_ON = {
     RunState.PREPARING,
     RunState.READY,
     RunState.RUNNING,
+    RunState.INTERRUPTED,
     RunState.HOLDING,
     RunState.HELD,
     RunState.LOST,
@@ -78,6 +79,7 @@ def run_state(text: Text, task: MeasuringTask) -> tuple[str, str]:
     if state is RunState.HELD and task.was_lost:  # why it is held
         words = f"{text('measure.state_lost')}. {words}"
     kinds = {
+        RunState.INTERRUPTED: "warning",
         RunState.HOLDING: "warning",
         RunState.HELD: "warning",
         RunState.LOST: "error",

@@ -39,7 +39,9 @@ class Progress:
 
 @dataclass
 class Work:
-    """One kind of long computation, one at a time, in a thread: what it is called, how far it is, and what came out.
+    """One kind of long computation, one at a time, in a thread: what it is of, how far it is, and what came out.
+
+    ``name`` is one that is the same in every language, such as that of a program, or nothing.
 
     ``result`` is what the last one returned, ``error`` the sentence of its failure; both None while it runs.
     """

@@ -72,9 +72,9 @@ def _flank(axes: Axes, before: Topography, after: Topography | None, scale: floa
     else:
         same_grid = after.deviation.shape == before.deviation.shape
         draw_topography(axes, after, before if same_grid else None, scale, taken)
-    shown = [("", before)] if after is None else [("before ", before), ("after ", after)]
-    words = ", ".join(f"{when}{_largest(each)}" for when, each in shown)
-    axes.set_title(f"{before.flank} flank, zero at its reference point: largest {words}", fontsize=9)
+    shown = [("", before)] if after is None else [(" before", before), (" after", after)]
+    words = ", ".join(f"{_largest(each)}{when}" for when, each in shown)
+    axes.set_title(f"{before.flank} flank\nlargest: {words}", fontsize=9)  # in two lines: flanks stand side by side
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncol=3, frameon=False)
 
 

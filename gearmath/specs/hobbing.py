@@ -35,6 +35,8 @@ from gearmath.specs.toml import Spec, find, load
 
 __all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 
+#: The display has two digits for the number of a hob.
+MOST_HOBS = 99
 #: An LS7184 ignores A and B during its output pulse of 10 us, so that faster edges are lost.
 LS7184_EDGE_RATE = 100_000
 #: Largest denominator of the rule in 32 bits; gearmath.gearbox.proof shows that it is tight.
@@ -136,6 +138,8 @@ class HobbingMachine(Shown, Spec):
         names = [hob.name for hob in self.hobs]
         if self.profile == "hobbing" and not names:
             raise ValueError("hobs: the list is empty, at least one [[hobs]] must be there")
+        if len(names) > MOST_HOBS:
+            raise ValueError(f"hobs: the list has {len(names)}, at most {MOST_HOBS} have a number on the display")
         for place, name in enumerate(names, 1):
             if name in names[: place - 1]:
                 raise ValueError(f"hobs #{place}: hob {name} stands in the list more than once, take it out")

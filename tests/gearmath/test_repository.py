@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import json
+import math
 import re
 import subprocess
 import sys
@@ -139,6 +140,28 @@ def test_degrees_become_radians_in_specs_and_few_places_that_are_known() -> None
                 elsewhere.append(f"{name}:{node.lineno}: {ast.unparse(node)}")
     assert elsewhere == []
     assert used == set(DEGREES_ARE_READ)
+
+
+def test_the_number_of_a_degree_is_typed_once() -> None:
+    """However it is spelled: pi over 180, its inverse, or their digits. Words of NC programs are texts, not numbers."""
+    typed = set()
+    for path in sorted((ROOT / "gearmath").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+                ends = {ast.unparse(end).rsplit(".", 1)[-1] for end in (node.left, node.right)}
+                halves = {str(end.value) for end in (node.left, node.right) if isinstance(end, ast.Constant)}
+                spelled = "pi" in ends and bool(halves & {"180", "180.0"})
+            else:
+                number = node.value if isinstance(node, ast.Constant) and isinstance(node.value, float) else 0.0
+                spelled = math.isclose(number, math.pi / 180, rel_tol=1e-4)
+                spelled |= math.isclose(number, 180 / math.pi, rel_tol=1e-4)
+            if spelled or (isinstance(node, ast.Attribute | ast.Name) and _last(node) in ("deg2rad", "rad2deg")):
+                typed.add(path.relative_to(ROOT / "gearmath").as_posix())
+    assert typed == {"specs/ratio.py"}
+
+
+def _last(node: ast.Attribute | ast.Name) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id
 
 
 def _called(node: ast.Call) -> str:

@@ -31,8 +31,8 @@ _SIDES = 2
 COUNT = _SIDES * len(BORDERS)
 
 
-#: Displacement [mm] beyond which no assembly is meant.
-MOST_MM = 50.0
+#: Displacement [mm] and growth of the shaft angle [degrees] beyond which no assembly is meant.
+MOST_MM, MOST_DEG = 50.0, 10.0
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from nicegui import ui
 
 from gearmath.control.store_evaluation import EvaluatedRun
-from gearmath.hmi import blocks, widgets
+from gearmath.hmi import acting, blocks, widgets
 from gearmath.hmi.correcting import (
     NOTE,
     WHICH,
@@ -84,7 +84,7 @@ class _CorrectPage:
             desk.of("correct").forget()
             desk.wanted["correct"] = self.key()
 
-        with blocks.buttons() as button:
+        with acting.buttons() as button:
             button(self.no_run, text("correct.compute"), begin, "tune", primary=True)
 
     def measured(self) -> None:
@@ -192,7 +192,7 @@ class _CorrectPage:
             found = proposal()
             assert found is not None  # else something is missing
             desk.wanted["correct.accept"] = self.key()
-            work.start(text("correct.writing"), lambda progress: accept(desk.runs, found, self.shared.folder))
+            work.start(f"run {found.evaluated.run.id}", lambda progress: accept(desk.runs, found, self.shared.folder))
 
         def rejected() -> None:
             found = proposal()
@@ -204,7 +204,7 @@ class _CorrectPage:
 
         note = ui.input(text("correct.note")).classes("gm-text").props("outlined dense counter")
         note.props["maxlength"] = NOTE
-        with blocks.buttons() as button:
+        with acting.buttons() as button:
             button(lambda: missing() or nothing(), text("correct.accept"), accepted, "check", primary=True)
             button(missing, text("correct.reject"), rejected, "close")
 
@@ -223,7 +223,7 @@ class _CorrectPage:
                 else:
                     done.show("")
 
-            widgets.progress(text, work, ended)
+            widgets.progress(text, work, lambda: text("correct.writing"), ended)
 
         blocks.follow(lambda: desk.wanted.get("correct.accept") == self.key(), outcome)
         blocks.follow(lambda: (desk.shown_run(), desk.decisions), self._decided)

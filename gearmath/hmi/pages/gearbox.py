@@ -11,29 +11,35 @@ from nicegui import ui
 from gearmath.front.hobbing import Job
 from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
-from gearmath.gearbox.job import ThreadPlan
-from gearmath.hmi import blocks, widgets, words
-from gearmath.hmi.catalog import files_of
+from gearmath.gearbox.job import GearboxJob, ThreadPlan
+from gearmath.hmi import acting, blocks, widgets, words
+from gearmath.hmi.catalog import changed_at, check, files_of
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.hobbing_job import (
-    FIELDS,
+    EDGES,
+    START,
     HobbingWish,
     PlanLine,
     blank_lines,
+    figure_symbol,
     firmware_zip,
+    limits,
     plan_lines,
     planned,
     predicted,
+    rpm_limits,
     sketch_name,
 )
 from gearmath.hmi.messages import Text
+from gearmath.hmi.number_field import NumberField
+from gearmath.hmi.numbers import Limits
 from gearmath.hmi.state import Shared
 from gearmath.hmi.work import Progress
 from gearmath.specs.hobbing import HobbingMachine
 from gearmath.specs.toml import find
 
-#: Edges of a simulation, and the count of the hob before it: the floating rule loses itself only after hours.
-_EDGES, _MOST_EDGES, _LATEST = 1_000_000, 20_000_000, 2_000_000_000
+#: Edges of a simulation at first.
+_EDGES = 1_000_000
 _EVERY = "-"
 
 
@@ -57,7 +63,7 @@ class _GearboxPage:
 
     def __init__(self, shared: Shared, text: Text) -> None:
         self.shared, self.text, self.desk = shared, text, shared.desk
-        self.fields: list[widgets.NumberField] = []
+        self.fields: list[NumberField] = []
         """What is to be cut, as it is typed on this page."""
 
     def outdated(self) -> str:
@@ -74,8 +80,8 @@ class _GearboxPage:
         return "" if work.result is not None else self.text("gearbox.no_plan")
 
     def key(self) -> Any:
-        """What is planned."""
-        return self.desk.hobber, self.desk.wish
+        """What is planned: machine, the file as it is, and the wish."""
+        return self.desk.hobber, changed_at(self.desk.hobber), self.desk.wish
 
     def compute(self) -> Callable[[Progress], tuple[HobbingMachine, Job]]:
         """The plan of now."""
@@ -97,55 +103,60 @@ class _GearboxPage:
 
         def choose(name: str) -> None:
             if name != desk.hobber:
+                check("hobber", name)
                 self.desk.wish = HobbingWish(teeth=desk.wish.teeth or 17, pitch=desk.wish.pitch or "1.25mm")
                 desk.hobber = name
 
         options = files_of("hobber", self.shared.folder)
         options = options if desk.hobber in options else {desk.hobber: desk.hobber, **options}
         widgets.choice(text("gearbox.file"), options, desk.hobber, choose)
-        blocks.follow(lambda: desk.hobber, self._wish)
+        blocks.follow(lambda: (desk.hobber, changed_at(desk.hobber)), self._wish)
 
     def _wish(self) -> None:
         """The fields that this machine has."""
         text, wish = self.text, self.desk.wish
-        machine = load_hobber(find(self.desk.hobber))
-        hands = {hand: text(f"gear.{hand}") for hand in ("right", "left")}
         self.fields.clear()
+        machine = load_hobber(find(self.desk.hobber))
+        within, hands = limits(machine), {hand: text(f"gear.{hand}") for hand in ("right", "left")}
         starts = wish.starts or (1 if machine.profile == "lathe" else machine.hob_starts)
         if machine.profile == "lathe":
             pitch = widgets.word(text("gearbox.pitch"), wish.pitch or "", text("gearbox.pitch_like"))
             pitch.on("change", lambda: self.wish(pitch=pitch.value))
-            self._number("starts", starts, "", 0)
+            self._number("starts", starts, "", 0, within["starts"])
             widgets.choice(text("gearbox.hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
         else:
-            self._number("teeth", wish.teeth, "", 0)
+            self._number("teeth", wish.teeth, "", 0, within["teeth"])
             every = {_EVERY: text("gearbox.every"), **{hob.name: hob.name for hob in machine.hobs}}
             chosen = wish.hob or _EVERY
             widgets.choice(
                 text("gearbox.hob"), every, chosen, lambda hob: self.wish(hob=None if hob == _EVERY else hob)
             )
-            self._number("starts", starts, "", 0)
-            self._number("helix", wish.helix, "°", 4)
+            self._number("starts", starts, "", 0, within["starts"])
+            self._number("helix", wish.helix, "°", 4, within["helix"])
             widgets.choice(text("gearbox.helix_hand"), hands, wish.hand, lambda hand: self.wish(hand=hand))
             cuts = {cut: text(f"gearbox.{cut}") for cut in ("climb", "conventional")}
             widgets.choice(text("gearbox.cut"), cuts, wish.cut, lambda cut: self.wish(cut=cut))
             if machine.feed is None:
                 feed = widgets.word(text("gearbox.feed"), wish.feed, text("gearbox.feed_like")).props('suffix="mm"')
                 feed.on("change", lambda: self.wish(feed=feed.value))
-        most, label = machine.limits.hob_rpm, text("gearbox.rpm")  # left out, it is what the plan proposes
-        rpm = widgets.NumberField(
-            text, label, wish.rpm, "1/min", 0.01, most, lambda rpm: self.wish(rpm=rpm), 2, optional=True
+        label = text("gearbox.rpm")  # left out, it is what the plan proposes
+        rpm = NumberField(
+            text, label, wish.rpm, "1/min", within["rpm"], lambda rpm: self.wish(rpm=rpm), 2, optional=True
         )
         self.fields.append(rpm)
+        blocks.follow(self._job, lambda: rpm.limit(within["rpm"] if (job := self._job()) is None else rpm_limits(job)))
 
-    def _number(self, key: str, value: float | None, unit: str, digits: int) -> None:
-        low, high = FIELDS[key]
+    def _job(self) -> GearboxJob | None:
+        """The plan of the job that stands in the fields, where there is one."""
+        found = self.desk.of("gearbox")
+        return found.work.result[1].plan if found.has(self.key()) else None
 
+    def _number(self, key: str, value: float | None, unit: str, digits: int, within: Limits) -> None:
         def changed(number: float) -> None:
             self.wish(**{key: int(number) if digits == 0 else number})
 
         label = self.text(f"gearbox.{key}")
-        self.fields.append(widgets.NumberField(self.text, label, value, unit, low, high, changed, digits))
+        self.fields.append(NumberField(self.text, label, value, unit, within, changed, digits))
 
     def plan(self) -> None:
         """Ratio and rates against their limits, and the firmware."""
@@ -202,14 +213,14 @@ class _GearboxPage:
             desk.wanted["quality"] = self.key()
 
         def compute() -> Callable[[Progress], Any]:
-            name, wish = self.key()
+            name, _, wish = self.key()
             return lambda progress: predicted(load_hobber(find(name)), wish, progress)
 
         def show(found: tuple[tuple[FigureClass, ...], int | None]) -> None:
             rows, whole = found
             cells = [
                 [
-                    row.figure.replace("_", " "),
+                    figure_symbol(row.figure),
                     f"{row.value_um:z.2f}",
                     "–" if row.accuracy_class is None else str(row.accuracy_class),
                     "–" if row.tolerance_um is None else f"{row.tolerance_um:z.2f}",
@@ -221,7 +232,7 @@ class _GearboxPage:
             widgets.note(f"{text('gearbox.whole_class')}: {'–' if whole is None else whole}")
             widgets.Message(text("gearbox.unconfirmed"), "warning")
 
-        with blocks.buttons() as button:
+        with acting.buttons() as button:
             button(lambda: self.no_plan(of_gear=True), text("gearbox.predict"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,
@@ -237,8 +248,8 @@ class _GearboxPage:
         text, desk = self.text, self.desk
         widgets.note(text("gearbox.rules"))
         with widgets.row():
-            edges = widgets.NumberField(text, text("gearbox.edges"), _EDGES, "", 1000, _MOST_EDGES, digits=0)
-            start = widgets.NumberField(text, text("gearbox.start"), 0, "", 0, _LATEST, digits=0)
+            edges = NumberField(text, text("gearbox.edges"), _EDGES, "", EDGES, digits=0)
+            start = NumberField(text, text("gearbox.start"), 0, "", START, digits=0)
 
         def missing() -> str:
             return self.no_plan() or blocks.refused(text, (edges, start))
@@ -254,10 +265,10 @@ class _GearboxPage:
 
         def compute() -> Callable[[Progress], str]:
             wanted: Any = desk.wanted["gearbox"]
-            (name, wish), count, first = wanted
+            (name, _, wish), count, first = wanted
             return lambda progress: _error(name, wish, count, first, progress)
 
-        with blocks.buttons() as button:
+        with acting.buttons() as button:
             button(missing, text("gearbox.simulate"), begin, "play_arrow", primary=True)
         blocks.kept(
             text,

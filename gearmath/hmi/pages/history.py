@@ -8,8 +8,8 @@ from typing import Any
 from nicegui import ui
 
 from gearmath.control.store_compare import Comparison
-from gearmath.control.store_picture import runs_figure, trend_figure
-from gearmath.hmi import blocks, widgets
+from gearmath.control.store_picture import figure_title, runs_figure, trend_figure
+from gearmath.hmi import acting, blocks, widgets
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.judged_runs import JudgedRuns
 from gearmath.hmi.messages import Text
@@ -116,7 +116,7 @@ def _compare(text: Text, found: Comparison, svg: str, _: list[str]) -> None:
     first, last = (text("history.of_run", run=one.run.id) for one in found.runs)
     head = [text("history.figure"), *(f"{word} / µm" for word in (first, last, text("history.change"), "u"))]
     blocks.plain_table(text("history.figures"), [*head, text("history.verdict")], rows)
-    blocks.chart(text, svg, text("history.comparison"))
+    blocks.chart(text, svg, text("history.comparison"), across=True)
 
 
 def _trend(shared: Shared, text: Text) -> None:
@@ -141,7 +141,7 @@ def _trend(shared: Shared, text: Text) -> None:
         run: Any = desk.shown_run()
         return lambda progress: _drawn_trend(desk.runs, run, progress)
 
-    with blocks.buttons() as button:
+    with acting.buttons() as button:
         button(missing, text("history.show_trend"), begin, "show_chart", primary=True)
     blocks.kept(
         text,
@@ -158,7 +158,7 @@ def _show_trend(text: Text, found: Comparison, svg: str, left_out: list[str]) ->
         widgets.Message(text.quoted(sentence), "warning")
     widgets.note(text("history.bars"))
     with ui.element("div").classes("gm-follow"):
-        blocks.chart(text, svg, text("history.trend"))
+        blocks.chart(text, svg, text("history.trend"), names=words_of_trend(text, found))
     names, runs = blocks.flank_names(text), [one.run.id for one in found.runs]
     rows = [
         [
@@ -169,6 +169,11 @@ def _show_trend(text: Text, found: Comparison, svg: str, left_out: list[str]) ->
     ]
     head = [f"{text('history.figure')} / µm", *(text("history.of_run", run=run) for run in runs)]
     blocks.plain_table(text("history.figures"), head, rows)
+
+
+def words_of_trend(text: Text, found: Comparison) -> dict[str, str]:
+    """What the figures over the charts of a trend are called on the page."""
+    return {figure_title(row.name): blocks.figure_name(text, row.name) for row in found.figures}
 
 
 def _other(shared: Shared) -> int | None:

@@ -78,30 +78,30 @@ def _operator(shared: Shared, text: Text, machine: SimulatedMachine) -> None:
     link = shared.link
     assert link is not None
     chosen = {"name": ""}
+
+    def missing() -> str:
+        return "" if chosen["name"] else text("machine.select_needed" if names.options else "machine.none_on_control")
+
     with widgets.panel(text("machine.operator"), wide=True):
         widgets.note(text("machine.operator_note"))
-        with widgets.row():
+        with acting.buttons() as button:
             names = widgets.choice(
                 text("machine.operator_program"),
                 machine.programs(),
                 None,
                 lambda name: chosen.update(name=name or ""),
             )
-            label = text("machine.select")
-            select = widgets.button(label, lambda: machine.select(chosen["name"], shared.choice.gear_set))
+            button(missing, text("machine.select"), lambda: machine.select(chosen["name"], shared.choice.gear_set))
             widgets.button(text("machine.start"), machine.start, "play_arrow")
             widgets.button(text("machine.reset"), lambda: link.submit(machine.reset()), "restart_alt")
             widgets.button(text("machine.stop"), machine.emergency_stop, "dangerous")
             widgets.button(text("machine.touch_probe"), machine.touch_probe, "touch_app")
             cut = widgets.button(text("machine.cut_line"), lambda: link.submit(machine.cut_line()), "link_off")
-        no_program = widgets.note("")
 
     def look() -> None:
         found = machine.programs()
         if names.options != found:
             names.set_options(found, value=chosen["name"] or None)
-        why = "" if chosen["name"] else text("machine.select_needed" if found else "machine.none_on_control")
-        acting.allow(why, no_program, select)
         cut.enabled = link.view.connected  # what it fails is said above
 
     acting.watch(text, look)

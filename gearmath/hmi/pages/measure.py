@@ -124,13 +124,17 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
     """Returns what raises InputError while the probe is not checked."""
     chosen = {"name": ""}
     check = ProbeCheck()
+
+    def missing() -> str:
+        return _why_not(shared, text, "" if names.options else text("measure.no_program"))
+
     with widgets.panel(text("measure.new")):
         names = widgets.choice(text("measure.program"), [], None, lambda name: chosen.update(name=name or ""))
         widgets.heading(text("measure.check"))
         said = widgets.Message()
         by_hand = ui.checkbox(text("measure.check_by_hand"))
-        start = widgets.button(text("measure.start"), lambda: ask_to_start(), "fiber_manual_record", primary=True)
-        reason = widgets.note("")
+        with acting.buttons() as button:
+            button(missing, text("measure.start"), lambda: ask_to_start(), "fiber_manual_record", primary=True)
 
     def checked() -> None:
         if not (check.is_done or by_hand.value):
@@ -153,7 +157,6 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
         found = [one.name for one in programs_work.programs(shared.folder)]
         if names.options != found:
             names.set_options(found, value=chosen["name"] if chosen["name"] in found else None)
-        acting.allow(_why_not(shared, text, text("measure.no_program") if not found else ""), reason, start)
         check.look(None if link.view.is_stale else link.view.probe)
         by_hand.visible = check.state == "unknown"
         said.show(text(f"measure.check_{check.state}"), "good" if check.is_done else "info")
@@ -165,10 +168,11 @@ def _new(shared: Shared, text: Text, link: ControlLink, task: MeasuringTask) -> 
 def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
     with widgets.panel(text("measure.unfinished")):
         none = widgets.note(text("measure.none_unfinished"))
-        place = ui.element("div").classes("gm-list")
-        reason = widgets.note("")
+        place = ui.element("div").classes("gm-follow")
     shown: list[list[UnfinishedRun] | None] = [None]
-    buttons: list[ui.button] = []
+
+    def missing() -> str:
+        return _why_not(shared, text, "")
 
     def ask_to_resume(one: UnfinishedRun) -> None:
         values = {"run": one.run, "program": one.program, "kept": one.kept, "total": one.total}
@@ -181,12 +185,10 @@ def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
         if shown[0] != found:
             shown[0] = found
             draw(found)
-        acting.allow(_why_not(shared, text, "") if found else "", reason, *buttons)
 
     def draw(found: list[UnfinishedRun]) -> None:
         place.clear()
-        buttons.clear()
-        with place:
+        with place, acting.buttons() as button, ui.element("div").classes("gm-list"):
             for one in found:
                 widgets.note(
                     f"{text('measure.run_number', run=one.run, program=one.program)}, "
@@ -194,19 +196,22 @@ def _unfinished(shared: Shared, text: Text, task: MeasuringTask) -> None:
                     f"{text('measure.begun')} {one.begun[:16].replace('T', ' ')} UTC. "
                     f"{text('measure.why')}: {text.quoted(one.why) or text('measure.open')}"
                 )
-                label = text("measure.resume", run=one.run)
-                buttons.append(widgets.button(label, partial(ask_to_resume, one), "replay"))
+                button(missing, text("measure.resume", run=one.run), partial(ask_to_resume, one), "replay")
 
     acting.watch(text, look, 4 * widgets.LOOK)
 
 
 def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[], None]) -> None:
     chosen: dict[str, int | None] = {"run": None}
+
+    def missing() -> str:
+        return _why_not(shared, text, "" if runs.options else text("measure.no_complete"))
+
     with widgets.panel(text("measure.again")):
         runs = widgets.choice(text("measure.again_run"), {}, None, lambda run: chosen.update(run=run))
         points = widgets.word(text("measure.again_points"), "", "")
-        start = widgets.button(text("measure.again_start"), lambda: ask_again(), "replay")
-        reason = widgets.note("")
+        with acting.buttons() as button:
+            button(missing, text("measure.again_start"), lambda: ask_again(), "replay")
 
     def ask_again() -> None:
         run, wanted = chosen["run"], (points.value or "").strip()
@@ -228,6 +233,5 @@ def _again(shared: Shared, text: Text, task: MeasuringTask, checked: Callable[[]
         found = {run: f"{run}: {program}" for run, program in complete_runs(shared.store).items()}
         if runs.options != found:
             runs.set_options(found, value=chosen["run"] if chosen["run"] in found else None)
-        acting.allow(_why_not(shared, text, text("measure.no_complete") if not found else ""), reason, start)
 
     acting.watch(text, look, 4 * widgets.LOOK)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -11,19 +11,29 @@ from nicegui import ui
 from gearmath.errors import InputError
 from gearmath.hmi import acting, blocks, program_list, programs_work, widgets
 from gearmath.hmi.messages import Text
+from gearmath.hmi.number_field import NumberField, numbers
+from gearmath.hmi.numbers import Limits
 from gearmath.hmi.programs_work import WrittenProgram
 from gearmath.hmi.state import Choice, Shared
 from gearmath.hmi.words import duration
 from gearmath.hmi.work import Progress
 from gearmath.machine.measuring.checked import ProbingChoice
-from gearmath.machine.planning.cut_plan import CuttingJob
-from gearmath.specs.measurement import MOST_TOUCHES
+from gearmath.machine.planning.cut_plan import DEFAULT_FEED, DEFAULT_SPINDLE_RPM, CuttingJob
+from gearmath.machine.planning.path import DEFAULT_TOLERANCE
 
 #: What the fields ask for: a cutting job, or what is probed.
 Asked = TypeVar("Asked", CuttingJob, ProbingChoice)
 
 #: The computations of this page.
 _CUT, _PROBE = "programs.cut", "programs.probe"
+#: The fields of a cutting program: key, value at first, unit.
+_OF_CUT = (
+    ("feed", DEFAULT_FEED, "mm/min"),
+    ("spindle_rpm", DEFAULT_SPINDLE_RPM, "1/min"),
+    ("tolerance", 1000 * DEFAULT_TOLERANCE, "µm"),
+    ("roughing_stock", 0.0, "mm"),
+    ("finishing_stock", 0.0, "mm"),
+)
 
 
 def build(shared: Shared, text: Text) -> None:
@@ -52,20 +62,18 @@ def _head(shared: Shared, text: Text, kind: str) -> ui.input:
 
 
 def _cutting(shared: Shared, text: Text) -> None:
+    first = _first_limits(shared.choice)
     with widgets.panel(text("programs.cut")):
         name = _head(shared, text, "CUT")
         with widgets.fields():
             fields = {
-                "feed": widgets.NumberField(text, text("programs.feed"), 300.0, "mm/min", 1.0, 5000.0),
-                "spindle_rpm": widgets.NumberField(text, text("programs.rpm"), 120.0, "1/min", 1.0, 20000.0),
-                "tolerance": widgets.NumberField(text, text("programs.tolerance"), 0.1, "µm", 0.01, 100.0),
-                "roughing_stock": widgets.NumberField(text, text("programs.roughing"), 0.0, "mm", 0.0, 5.0),
-                "finishing_stock": widgets.NumberField(text, text("programs.finishing"), 0.0, "mm", 0.0, 5.0),
+                key: NumberField(text, text(f"programs.{key}"), value, unit, first[key]) for key, value, unit in _OF_CUT
             }
         dry = ui.checkbox(text("programs.dry_run"))
+        _limited(shared, text, fields, dry)
 
         def job() -> CuttingJob:
-            values = widgets.numbers(fields)
+            values = numbers(fields)
             return CuttingJob(
                 tolerance=values["tolerance"] / 1000,
                 feed=values["feed"],
@@ -80,23 +88,45 @@ def _cutting(shared: Shared, text: Text) -> None:
 
 
 def _probing(shared: Shared, text: Text) -> None:
+    first = _first_limits(shared.choice)
     with widgets.panel(text("programs.probe")):
         name = _head(shared, text, "PROBE")
         with widgets.fields():
-            teeth = widgets.NumberField(text, text("programs.topography"), 1, "", 0, 1, digits=0)
-            repeat = widgets.NumberField(text, text("programs.repeat"), 1, "", 1, MOST_TOUCHES, digits=0)
-        acting.watch(text, lambda: teeth.limit(programs_work.teeth(shared.choice)), 4 * widgets.LOOK)
+            fields = {
+                key: NumberField(text, text(f"programs.{key}"), 1, "", first[key], digits=0)
+                for key in ("teeth", "repeat")
+            }
+        _limited(shared, text, fields)
         pitch = ui.checkbox(text("programs.pitch"), value=True)
         around = ui.checkbox(text("programs.registration"), value=True)
 
         def chosen() -> ProbingChoice:
-            values = widgets.numbers({"teeth": teeth, "repeat": repeat})
+            values = numbers(fields)
             return ProbingChoice(
                 tuple(range(int(values["teeth"]))), bool(pitch.value), bool(around.value), int(values["repeat"])
             )
 
         label = text("programs.generate_probe"), "my_location"
         _writing(shared, text, _PROBE, label, name, chosen, programs_work.write_probing)
+
+
+def _first_limits(choice: Choice) -> dict[str, Limits]:
+    """Those of the choice; where a file of it is refused, which is said beside the fields, of the bundled ones."""
+    try:
+        return programs_work.limits(choice, False)
+    except InputError:
+        return programs_work.limits(Choice(), False)
+
+
+def _limited(shared: Shared, text: Text, fields: Mapping[str, NumberField], dry: ui.checkbox | None = None) -> None:
+    """The limits of the fields follow the choice, wherever it is changed, and whether air is cut."""
+
+    def look() -> None:
+        now = programs_work.limits(shared.choice, dry is not None and bool(dry.value))
+        for key, one in fields.items():
+            one.limit(now[key])
+
+    acting.watch(text, look)
 
 
 def _writing(
@@ -140,7 +170,7 @@ def _writing(
     def look() -> None:
         button.enabled = not work.running
 
-    widgets.progress(text, work, ended, lambda: text("programs.writing", name=work.name), is_current)
+    widgets.progress(text, work, lambda: text("programs.writing", name=work.name), ended, is_current)
     acting.watch(text, look)
 
 

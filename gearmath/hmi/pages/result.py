@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from nicegui import ui
 
-from gearmath.hmi import blocks, widgets
+from gearmath.hmi import blocks, widgets, words
 from gearmath.hmi.drawing import named
 from gearmath.hmi.messages import Text
 from gearmath.hmi.result_view import ResultRow, ResultView, SureView, result_of, sure_of
@@ -89,7 +89,7 @@ def _sheet(shared: Shared, text: Text, run: int) -> None:
     work, asked = shared.works["result.sheet"], [""]
 
     def ask(what: str) -> None:
-        work.start(text("result.sheet"), lambda progress: shared.desk.runs.sheet(run, progress))
+        work.start(f"run {run}", lambda progress: shared.desk.runs.sheet(run, progress))
         asked[0] = what
 
     def ended() -> None:
@@ -106,7 +106,7 @@ def _sheet(shared: Shared, text: Text, run: int) -> None:
     with widgets.row():
         widgets.button(text("result.print"), lambda: ask("print"), "print", primary=True)
         widgets.button(text("result.save"), lambda: ask("save"), "download")
-    widgets.progress(text, work, ended)
+    widgets.progress(text, work, lambda: text("result.sheet"), ended)
     frame = ui.element("iframe").classes("gm-sheet")
     frame.props["title"], frame.props["tabindex"] = text("result.sheet"), "-1"
 
@@ -147,7 +147,11 @@ def _uncertainty(text: Text, found: SureView, names: dict[str, str]) -> None:
         return
     widgets.note(f"{text('result.how_sure')}: {text.quoted(found.source)}")
     head = [text(f"result.{key}") for key in ("figure", "value", "u", "from", "to", "unit", "method")]
-    rows = [[f"{blocks.figure_name(text, row.name)}, {names[row.flank]}", *row.cells] for row in found.figures]
+    rows = []
+    for row in found.figures:
+        *numbers, unit, method = row.cells
+        name = f"{blocks.figure_name(text, row.name)}, {names[row.flank]}"
+        rows.append([name, *numbers, words.unit(text, unit), method])
     blocks.plain_table(text("result.uncertainty"), head, rows)
 
 

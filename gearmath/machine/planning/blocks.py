@@ -191,7 +191,7 @@ class ExactPass:
 def check_tolerance(tolerance: float, decimals: float = ROUNDING, low: float = TOLERANCES[0]) -> None:
     """Raises InputError for a tolerance [mm] out of range; ``decimals`` [mm] is what printed ones may take of it."""
     high = TOLERANCES[1]
-    if not low <= tolerance <= high:
+    if not low <= round(tolerance, 12) <= high:  # 0.015 um in mm is a last digit less than 1.5e-5
         raise InputError(
             f"tolerance = {tolerance * 1000:g} um: must lie between {low * 1000:g} and {high * 1000:g} um; the printed "
             f"decimals alone may take {decimals * 1000:.3f} um"

@@ -26,7 +26,7 @@ from gearmath.machine.planning.clear_space import Room, room_of
 from gearmath.machine.planning.curves import curve_nodes, curve_seconds, degree_for, powers_of
 from gearmath.machine.planning.feeds import block_seconds, check_feed
 from gearmath.machine.planning.hobbed_curves import check_counting, curved_hobbing
-from gearmath.machine.planning.hobbing import hobbing_motion, index_ratio, straight_hobbing
+from gearmath.machine.planning.hobbing import LEAST_TOLERANCE, hobbing_motion, index_ratio, straight_hobbing
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.planning.rounding import ControlShare, control_share
@@ -40,9 +40,10 @@ DEFAULT_SPINDLE_RPM = 120.0
 PLUNGE_FEED = 200.0
 #: A dry run keeps the cutter this far above its cut. [mm]
 DRY_LIFT = 60.0
-_MOST_STOCK = 5.0
-#: And with more feed, where the machine file states no limit [mm/min].
-_MOST_FEED = 100_000.0
+MOST_STOCK = 5.0
+#: With less feed a pass takes hours, and in face hobbing C counts out of its travel; and the most, where the machine
+#: file states no limit [mm/min].
+_LEAST_FEED, _MOST_FEED = 1.0, 100_000.0
 #: A roughing pass may deviate by this part of its stock.
 _ROUGH_SHARE = 0.05
 #: A plunge starts this many tooth depths above the bottom, and a bit [mm]; at the bottom the cutter turns this often.
@@ -71,8 +72,8 @@ class CuttingJob:
 
     def __post_init__(self) -> None:
         for key in ("roughing_stock", "finishing_stock"):
-            if not 0.0 <= getattr(self, key) <= _MOST_STOCK:
-                raise InputError(f"{key} = {getattr(self, key)} mm: must lie between 0 and {_MOST_STOCK:g} mm")
+            if not 0.0 <= getattr(self, key) <= MOST_STOCK:
+                raise InputError(f"{key} = {getattr(self, key)} mm: must lie between 0 and {MOST_STOCK:g} mm")
         if 0.0 < self.roughing_stock <= self.finishing_stock:
             raise InputError(
                 f"roughing_stock = {self.roughing_stock} mm: must be more than the finishing_stock "
@@ -82,6 +83,8 @@ class CuttingJob:
             raise InputError("spaces: there is no tooth space to cut")
         check_tolerance(self.tolerance)
         check_feed(self.feed)
+        if self.feed < _LEAST_FEED:
+            raise InputError(f"feed = {self.feed:g} mm/min: must be at least {_LEAST_FEED:g} mm/min")
 
     @property
     def stages(self) -> tuple[tuple[str, float, float], ...]:
@@ -134,11 +137,18 @@ def cutting_plan(
     range, and a face hobbed member whose spaces are not all cut, or whose machine has no axis C.
     """
     member = bevel_set.member(name)
-    of_machine = None if job.dry_run else machine.max_feed_per_min  # which is that of a cut
-    if job.feed > (most := of_machine or _MOST_FEED):
-        limit = f"max_feed_per_min of {machine.name}" if of_machine else "the limit"
+    _, most = feed_limits(machine, job.dry_run)
+    if job.feed > most:
+        limit = "the limit" if most == _MOST_FEED else f"max_feed_per_min of {machine.name}"
         raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, {limit}")
-    head, space = machine.cutter_head, None if member.cutting == "completing" else tooth_space(member, name, 7)
+    _, fastest = spindle_limits(member, name, machine, job.dry_run)
+    if machine.spindle_speed_rpm[1] >= job.spindle_rpm > fastest:
+        known = math.floor(100 * fastest) / 100
+        raise InputError(
+            f"spindle speed = {job.spindle_rpm:g} rpm: must be at most {known:g} rpm, where the tips of the blades "
+            f"reach max_cutting_speed {machine.max_cutting_speed:g} m/min of {machine.name}"
+        )
+    head, space = machine.cutter_head, _space(member, name)
     room = room_of(member, machine, machine.fixture)
     radius = max(widest(cutter_of(member, cut.flanks, space, 0.0), head) for cut in Cut.of(member, name))
     share = control_share(member, name, machine)
@@ -147,6 +157,31 @@ def cutting_plan(
         passes.append(one)
         progress(1)
     return CuttingPlan(bevel_set.title, name, member, machine, job, tuple(passes), share, space, room, radius)
+
+
+def feed_limits(machine: MillingMachine, dry_run: bool) -> tuple[float, float]:
+    """Least and highest feed [mm/min] of a job on a machine, whose limit is that of a cut: a dry run has another."""
+    return _LEAST_FEED, _MOST_FEED if dry_run else machine.max_feed_per_min or _MOST_FEED
+
+
+def spindle_limits(member: Member, name: str, machine: MillingMachine, dry_run: bool) -> tuple[float, float]:
+    """Lowest and highest speed [1/min] of the spindle, at which no blade tip cuts faster than the machine may."""
+    low, high = machine.spindle_speed_rpm
+    if dry_run or machine.max_cutting_speed is None:
+        return low, high
+    space = _space(member, name)
+    radius = max(cutter_of(member, cut.flanks, space).tip_radius for cut in Cut.of(member, name))
+    return low, min(high, 1000 * machine.max_cutting_speed / (2 * math.pi * radius))
+
+
+def tolerance_limits(member: Member) -> tuple[float, float]:
+    """Least and largest tolerance [mm] of a job on a member: in face hobbing the scallops need more."""
+    return LEAST_TOLERANCE if member.process == "face_hobbing" else TOLERANCES[0], TOLERANCES[1]
+
+
+def _space(member: Member, name: str) -> ToothSpace | None:
+    """The tooth space that tells how wide the cutters of single flanks are."""
+    return None if member.cutting == "completing" else tooth_space(member, name, 7)
 
 
 def pass_count(member: Member, name: str, job: CuttingJob) -> int:

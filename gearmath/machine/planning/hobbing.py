@@ -28,7 +28,7 @@ _CHORD_SHARE = 0.1
 #: What six decimals of C may do at the blade. [mm]
 C_ROUNDING = math.radians(0.5e-6) * 250.0
 #: With less, decimals and chords leave nothing for the scallops. [mm]
-_LEAST_TOLERANCE = 1.5e-5
+LEAST_TOLERANCE = 1.5e-5
 #: Most that the cutter goes down, and past the tooth, in a turn of the work: a blade cuts each space once. [mm]
 _PLUNGE_PER_TURN, _ROLL_PER_TURN = 0.2, 3.0
 #: No roll takes more turns of the work than this.
@@ -161,7 +161,7 @@ def _check(name: str, machine: MillingMachine, tolerance: float, feed: float, rp
     for what, value, unit in (("feed", feed, "mm/min"), ("spindle speed", rpm, "rpm")):
         if not (math.isfinite(value) and value > 0):
             raise InputError(f"{name}: {what} = {value} {unit}: must be greater than 0")
-    check_tolerance(tolerance, ROUNDING + C_ROUNDING, _LEAST_TOLERANCE)
+    check_tolerance(tolerance, ROUNDING + C_ROUNDING, LEAST_TOLERANCE)
 
 
 def _roll(member: Member, cut: Cut, drive: Drive, scallop: float) -> tuple[float, float, float]:

@@ -329,6 +329,20 @@ class Operator:
         self.page.screenshot(path=PICTURES / f"{name}.png", timeout=PATIENCE)
         return PICTURES / f"{name}.png"
 
+    def sticks_out(self, width: int, height: int) -> list[str]:
+        """What reaches over the edge of its panel when the screen has another size, such as a tablet that is turned."""
+        self.page.set_viewport_size({"width": width, "height": height})
+        look = """() => [...document.querySelectorAll('.gm-fact, .gm-figure, .gm-plain, .gm-chart, .gm-row')]
+          .filter(e => e.getBoundingClientRect().right > e.closest('.gm-panel').getBoundingClientRect().right + 1)
+          .map(e => e.textContent.slice(0, 60))"""
+        found: list[str] = self.page.evaluate(look)
+        for _ in range(50):  # until it is drawn anew
+            if not found:
+                break
+            self.page.wait_for_timeout(100)
+            found = self.page.evaluate(look)
+        return found
+
     def axe(self) -> list[str]:
         """Serious and critical violations that axe-core finds, with the first place of each."""
         from axe_core_python.sync_playwright import Axe

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import os
 import re
 import subprocess
 import sys
@@ -15,6 +16,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from gearmath.cli import main
+from gearmath.control.store import MeasurementStore
+from gearmath.control.store_schema import APPLICATION_ID
+from gearmath.hmi import app
 from tests.gearmath.hmi.conftest import Operator, Served
 
 _ROUTES = """
@@ -28,6 +32,22 @@ for routes in (app.routes, core.app.routes):
     for route in routes:
         found.append((getattr(route, "path", "/"), sorted(getattr(route, "methods", None) or ["GET"])))
 print(json.dumps(found))
+"""
+
+
+#: Root may write everywhere; without this right it may write what its files say, as everybody else.
+_RIGHT = "-dac_override,-dac_read_search"
+BOUND = ("setpriv", f"--bounding-set={_RIGHT}", f"--inh-caps={_RIGHT}") if os.geteuid() == 0 else ()
+
+
+_ONE_AFTER_THE_OTHER = """
+import sys
+from gearmath.cli import main
+for store in sys.argv[1:]:
+    try:
+        main(["hmi", "--port", "0", "--store", store])
+    except SystemExit as ended:
+        print(ended.code)
 """
 
 
@@ -242,6 +262,35 @@ def test_a_file_that_is_no_store_is_refused_at_the_start_and_stays_as_it_is(
         assert re.search(rf"{name}: .*measurement store", said)
         assert len(said.splitlines()) == 1
     assert (tmp_path / "notes.db").read_text() == "not a store"
+
+
+def test_a_store_that_cannot_be_written_or_has_nothing_written_beside_it_is_refused_at_the_start(
+    tmp_path: Path,
+) -> None:
+    """In a process without the right of root to write where nobody may."""
+    stores = [tmp_path / name / "runs.db" for name in ("file", "folder")]
+    for store in stores:
+        store.parent.mkdir()
+        MeasurementStore.open(store).close()
+    stores[0].chmod(0o444)
+    stores[1].parent.chmod(0o555)
+    command = [*BOUND, sys.executable, "-c", _ONE_AFTER_THE_OTHER, *map(str, stores)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert done.stdout == "2\n2\n"
+    assert done.stderr == "".join(f"gearmath: {store}: cannot be written: Permission denied\n" for store in stores)
+
+
+def test_an_empty_file_becomes_a_store_and_that_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = tmp_path / "runs.db"
+    store.touch()
+    monkeypatch.setattr(app, "serve", lambda *_: None)
+    for said in (f"{store}: was empty, and is a new measurement store now\n", ""):
+        main(["hmi", "--store", str(store)])
+        assert capsys.readouterr().out == said
+    with MeasurementStore.open(store, create=False) as made:
+        assert made.execute("PRAGMA application_id") == [(APPLICATION_ID,)]
 
 
 @pytest.mark.parametrize(

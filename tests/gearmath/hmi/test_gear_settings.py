@@ -34,7 +34,8 @@ def pinion() -> gm.Member:
 def test_limits_beside_a_field_are_those_that_a_file_is_refused_by(key: str) -> None:
     text = bundled(SET).read_text("utf-8")
     before, section, table = text.partition("[pinion.concave]")
-    for limit, beyond in zip(setting_limits(key), (-1.0, 1.0), strict=True):
+    limits = setting_limits(key)
+    for limit, beyond in ((limits.low, -1.0), (limits.high, 1.0)):
         changed, count = re.subn(rf"(?m)^{key} *=.*$", f"{key} = {limit + beyond}", table, count=1)
         assert count == 1
         with pytest.raises(InputError, match=rf"pinion\.concave\.{key} = .*must be .* {limit:g}\b"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -10,9 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from gearmath.control.store_picture import runs_figure, trend_figure
 from gearmath.errors import InputError
+from gearmath.hmi.blocks import words_of_charts
 from gearmath.hmi.drawing import drawn, translated
 from gearmath.hmi.judged_runs import JudgedRuns
+from gearmath.hmi.messages import Text
+from gearmath.hmi.pages.history import words_of_trend
 from gearmath.hmi.result_view import result_of, sure_of
 from gearmath.hmi.run_history import comparison, past_runs, trend
 from tests.gearmath.hmi.stored import SHARES, stock
@@ -116,6 +121,20 @@ def test_a_comparison_sees_the_stock_shrink_and_the_trend_says_what_was_left_out
     over_time, left_out = trend(runs, 2)
     assert [one.run.id for one in over_time.runs] == [1, 2]
     assert left_out == []
+
+
+def test_comparison_and_trend_are_drawn_in_the_language_of_the_page(runs: JudgedRuns) -> None:
+    german = Text("de")
+    found, (over_time, _) = comparison(runs, (2, 1)), trend(runs, 2)
+    words = words_of_charts(german) | words_of_trend(german, over_time)
+    for make in (lambda: runs_figure(found), lambda: trend_figure(over_time)):
+        shown = " ".join(re.findall(r">([^<>]+)</text>", translated(drawn(make), words)))
+        assert "Ritzel, Läufe 1, 2" in shown
+        english = (
+            r"\b(flank|largest|before|after|deviation|pinion|runs|crowning|twist|residual|rms|max|mean|not|tooth)\b"
+        )
+        assert re.findall(english, shown) == []
+    assert "Spiralwinkelabweichung" in words.values()
 
 
 def test_words_of_a_drawing_are_translated_and_names_are_not() -> None:

@@ -241,6 +241,7 @@ def test_after_an_emergency_stop_the_touches_are_kept_and_the_alarm_stays_until_
     _runs_until(machine, begin, 2)
     machine.soon(machine.nc.emergency_stop)
     one.sees("Unseen alarms: 1")
+    one.sees("The program is interrupted: look at the machine", one.panel("Run"))  # and no time that remains
     machine.nc.reset()
     one.sees("Ended before it was complete; what was touched is kept")
     _, touches, end = _run(page)

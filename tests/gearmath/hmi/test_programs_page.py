@@ -9,7 +9,7 @@ import pytest
 from playwright.sync_api import expect
 
 from gearmath.hmi.messages import Text
-from gearmath.hmi.numbers import parsed
+from gearmath.hmi.numbers import Limits, parsed
 from tests.gearmath.control.live.conftest import Live
 from tests.gearmath.hmi.conftest import Operator, Served
 
@@ -72,8 +72,8 @@ def test_a_number_out_of_range_stays_as_it_was_typed_and_is_refused_with_its_lim
     panel = one.panel("Cutting program")
     field = panel.get_by_label("Feed past the tooth", exact=True)
     for typed, why in (
-        ("99999", "99999 mm/min: must lie between 1 and 5000 mm/min"),
-        ("-1", "-1 mm/min: must lie between 1 and 5000 mm/min"),
+        ("99999", "99999 mm/min: must lie between 1 and 4000 mm/min"),
+        ("-1", "-1 mm/min: must lie between 1 and 4000 mm/min"),
         ("3oo", "3oo is no number"),
         ("", "a number is missing"),
     ):
@@ -109,18 +109,40 @@ def test_a_cutting_program_is_written_and_milled_with_progress(page: Served, ope
     [("3", 3.0), (" 3.5 ", 3.5), ("3,5", 3.5), ("-0", 0.0), ("1e1", 10.0), ("10", 10.0), ("0", 0.0)],
 )
 def test_a_number_is_read_as_it_stands(typed: str, value: float) -> None:
-    assert parsed(Text("en"), typed, 0.0, 10.0, "mm") == (value, None)
+    assert parsed(Text("en"), typed, Limits(0.0, 10.0), "mm") == (value, None)
 
 
 @pytest.mark.parametrize(("typed", "value"), [("3", 3.0), ("3.0", 3.0), ("0.5", None), ("2,999", None)])
 def test_a_count_is_a_whole_number_and_is_never_cut_off(typed: str, value: float | None) -> None:
-    found, why = parsed(Text("en"), typed, 0.0, 10.0, "", whole=True)
+    found, why = parsed(Text("en"), typed, Limits(0.0, 10.0), "", whole=True)
     assert found == value
     assert why == (None if value is not None else f"{typed}: must be a whole number")
 
 
 def test_a_limit_without_a_unit_leaves_no_gap_before_the_colon() -> None:
-    assert parsed(Text("en"), "-1", 0.0, 2e7, "")[1] == "-1: must lie between 0 and 20000000"
+    assert parsed(Text("en"), "-1", Limits(0, 20_000_000), "")[1] == "-1: must lie between 0 and 20000000"
+
+
+@pytest.mark.parametrize(
+    ("typed", "why"),
+    [
+        ("0", "0 mm: must be more than 0 and less than 10 mm"),
+        ("10", "10 mm: must be more than 0 and less than 10 mm"),
+        ("1e-9", None),
+    ],
+)
+def test_a_limit_that_is_itself_refused_is_said_to_be(typed: str, why: str | None) -> None:
+    limits = Limits(0.0, 10.0, above=True, below=True)
+    assert parsed(Text("en"), typed, limits, "mm")[1] == why
+    assert limits.hint(Text("en"), "mm") == "> 0 … < 10 mm"
+
+
+def test_a_large_count_keeps_all_of_its_digits() -> None:
+    """2^62 - 1 is none of the numbers that 64 bits of floating point have."""
+    limits = Limits(0, 2**62)
+    assert parsed(Text("en"), str(2**62 - 1), limits, "", whole=True) == (2**62 - 1, None)
+    assert parsed(Text("en"), str(2**62 + 1), limits, "", whole=True)[0] is None
+    assert parsed(Text("en"), "1e-999", limits, "", whole=True)[0] is None  # 0 as a float
 
 
 @pytest.mark.parametrize(
@@ -128,6 +150,6 @@ def test_a_limit_without_a_unit_leaves_no_gap_before_the_colon() -> None:
     ["", " ", "10.0001", "-0.0001", "nan", "inf", "1e999", "1_0", "0x1", "1.2.3", "1,2,3", "1 0", "٣", "1e", "."],
 )
 def test_what_is_no_number_or_out_of_range_is_refused(typed: str) -> None:
-    value, why = parsed(Text("en"), typed, 0.0, 10.0, "mm")
+    value, why = parsed(Text("en"), typed, Limits(0.0, 10.0), "mm")
     assert value is None
     assert why

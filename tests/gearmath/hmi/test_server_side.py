@@ -18,7 +18,7 @@ from gearmath.hmi.alarm_book import MOST, AlarmBook
 from gearmath.hmi.messages import Text
 from gearmath.hmi.plain_page import PlainErrors
 from gearmath.hmi.probe_check import ProbeCheck
-from gearmath.hmi.programs_work import programs, read, teeth, write_cutting, write_probing
+from gearmath.hmi.programs_work import limits, programs, read, write_cutting, write_probing
 from gearmath.hmi.state import Choice
 from gearmath.hmi.tickets import Tickets
 from gearmath.hmi.work import BROKEN, Progress, Work
@@ -179,12 +179,11 @@ def test_an_application_that_fails_answers_one_plain_page_and_tells_its_log() ->
     assert "inside" not in body
 
 
-def test_the_teeth_that_a_page_offers_are_those_of_the_chosen_member(tmp_path: Path) -> None:
-    assert [teeth(Choice(member=name)) for name in ("pinion", "gear")] == [12, 36]
+def test_a_set_that_is_refused_has_no_limits(tmp_path: Path) -> None:
     wrong = tmp_path / "wrong.toml"
     wrong.write_text("[pinion]\nteeth = 0\n", "utf-8")
     with pytest.raises(InputError, match=r"wrong\.toml"):
-        teeth(Choice(gear_set=str(wrong)))
+        limits(Choice(gear_set=str(wrong)), False)
 
 
 def test_programs_are_for_the_control_of_the_machine_file(tmp_path: Path) -> None:

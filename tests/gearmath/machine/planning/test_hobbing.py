@@ -30,6 +30,7 @@ from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import nominal_surfaces, surface_states
 from gearmath.machine.planning.clear_space import Room
 from gearmath.machine.planning.cut_plan import CuttingJob, tooth_in_roll
+from gearmath.machine.planning.hobbing import hobbing_motion
 from gearmath.machine.planning.passes import Pass
 from gearmath.machine.planning.path import Cut, axis_positions, below_the_flank, flank_points
 from gearmath.machine.writing.cutting import cutting_program
@@ -399,15 +400,22 @@ def test_writer_reader_writer_gives_the_same_text(hobbed, vertical, written):
         ({"spindle_rpm": 0.0}, r"^gear: spindle speed = 0\.0 rpm: must be greater than 0$"),
         ({"spindle_rpm": math.nan}, r"^gear: spindle speed = nan rpm: must be greater than 0$"),
         ({"feed": 0.0}, r"^feed = 0\.0 mm/min: must be greater than 0, and finite$"),
-        (
-            {"feed": 1e-4},
-            r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$",
-        ),
+        ({"feed": 0.99}, r"^feed = 0\.99 mm/min: must be at least 1 mm/min$"),
     ],
 )
 def test_faulty_jobs_are_refused(hobbed, vertical, job, sentence):
     with pytest.raises(InputError, match=sentence):
         cutting_program(hobbed, "gear", vertical, "HOB", CuttingJob(**{"spaces": range(39), **job}))
+
+
+def test_a_roll_of_more_turns_than_a_program_may_have_is_refused(hobbed, vertical):
+    """Slower than any job may be: what a long roll of a large gear would need."""
+    (cut,) = Cut.of(hobbed.gear, "gear")
+    tooth = tooth_in_roll(hobbed.gear, cut)
+    with pytest.raises(
+        InputError, match=r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$"
+    ):
+        hobbing_motion(hobbed.gear, "gear", cut, vertical, 1e-4, 1e-4, 120.0, 0.0, 200.0, tooth)
 
 
 def with_axes(machine, **axes):
