@@ -14,6 +14,7 @@ import numpy as np
 import derivations
 from derivations import flank as flank_chapter
 from derivations import gearbox as gearbox_chapter
+from gearmath.arguments.call import checked_call
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.report import SIDES as SIDES_OF_CONTACT
@@ -87,12 +88,13 @@ class MemberResult(Shown):
         ]
 
 
-def run_demo(folder: Path, say: Say) -> list[MemberResult]:
+@checked_call
+def run_demo(folder: str | Path, say: Say) -> list[MemberResult]:
     """Run everything; programs, measurements, corrected sets, pictures and C become the content of ``folder``.
 
     Raises InputError if the folder holds anything that an earlier demo did not write.
     """
-    with new_folder(folder) as place:
+    with new_folder(Path(folder)) as place:
         results = _run_steps(place, say)
     say(f"pictures, programs, measurements, corrected sets and C are in {folder}")
     return results

@@ -17,6 +17,7 @@ from gearmath.cli.common import (
     grid_of,
     member_of,
     nominal_words,
+    of,
     output,
     table,
 )
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 @click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
-@click.option("--flank", "side", type=click.Choice(["concave", "convex"]), required=True, help="Flank of the member.")
+@click.option("--flank", "side", type=of("flank"), required=True, help="Flank of the member.")
 @click.option("--grid", "size", show_default="5x9", help="Rows (root to tip) x columns (toe to heel).")
 @click.option("--margin", type=float, show_default="0.1", help="Part of face and depth left out at each end.")
 @click.option("--margin-root", "root", type=float, help="Part of the working depth left out at the root.")
@@ -79,7 +80,7 @@ def flank(
 @click.command()
 @SET
 @MEMBER
-@click.option("--columns", type=click.IntRange(3, 400), default=25, show_default=True, help="Columns toe to heel.")
+@click.option("--columns", type=of("columns"), default=25, show_default=True, help="Columns toe to heel.")
 @click.option("--space", is_flag=True, help="Write the surface of one tooth space, not the closed solid of the member.")
 @JSON
 @output("STL", ".stl")

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from gearmath.arguments.known import LEAST_STEP, MOST_DEG, MOST_MM, MOST_STEP
 from gearmath.cli.common import JSON, SET, bars, echo_json, plot, save_plot, table
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.bevel.contact.system import Assembly, System
 
-_FINEST, _COARSEST = 0.01, 15.0
 _LIMIT_TRIALS = 10
 #: Figures of a measured pair with an uncertainty: key, words and unit.
 _SURE = (
@@ -92,8 +92,6 @@ def contact(
 
 
 def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
-    from gearmath.bevel.contact.system import MOST_DEG, MOST_MM
-
     for name, value, most, unit in (
         ("--v", v, MOST_MM, "mm"),
         ("--h", h, MOST_MM, "mm"),
@@ -102,8 +100,8 @@ def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
     ):
         if not abs(value) <= most:
             raise InputError(f"{name} {value:g}: must lie between -{most:g} and {most:g} {unit}")
-    if not _FINEST <= step <= _COARSEST:
-        raise InputError(f"--step {step:g}: must lie between {_FINEST:g} and {_COARSEST:g} degrees")
+    if not LEAST_STEP <= step <= MOST_STEP:
+        raise InputError(f"--step {step:g}: must lie between {LEAST_STEP:g} and {MOST_STEP:g} degrees")
 
 
 def _lost(system: System, side: str, given: Assembly) -> str:

@@ -19,6 +19,7 @@ from gearmath.cli.common import (
     grid_of,
     member_of,
     nominal_words,
+    of,
     output,
 )
 from gearmath.cli.dialect import CONTROL
@@ -62,7 +63,7 @@ def teensy(machine: str, folder: Path) -> None:
 @CONTROL
 @click.option(
     "--blocks",
-    type=click.Choice(["g1", "poly"]),
+    type=of("blocks"),
     default="g1",
     show_default=True,
     help="Straight blocks, or polynomials where the cutter rolls, in the programs of gm-post.",
@@ -126,7 +127,7 @@ def stl(gear_set: str, target: Path) -> None:
 @export.command()
 @SET
 @MEMBER
-@click.option("--flank", type=click.Choice(["concave", "convex"]), required=True)
+@click.option("--flank", type=of("flank"), required=True)
 @click.option("--grid", default="5x9", show_default=True, help="Rows (root to tip) x columns (toe to heel).")
 @click.option(
     "--margin", type=float, default=0.1, show_default=True, help="Part of depth and width left out all round."

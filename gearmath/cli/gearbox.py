@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, echo_json, plot, save_plot
+from gearmath.cli.common import JSON, echo_json, of, plot, save_plot
 from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
@@ -25,9 +25,9 @@ _JOB = (
     click.option("--teeth", type=int, help="Teeth of the gear to be cut (hobbing machine)."),
     click.option("--pitch", help="Pitch of the thread to be cut, such as 1.25mm or 8tpi (lathe)."),
     click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread."),
-    click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out."),
+    click.option("--hand", type=of("hand"), help="Hand of helix or thread; right if left out."),
     click.option("--helix", type=float, help="Helix angle in degrees."),
-    click.option("--cut", type=click.Choice(["climb", "conventional"]), help="Sense of the feed; climb if left out."),
+    click.option("--cut", type=of("cut"), help="Sense of the feed; climb if left out."),
     click.option("--feed", help="Feed in mm per turn of the table, for a helix without an encoder on the feed."),
     click.option("--hob", help="One hob of the machine file, such as 32dp or m1; all of them if left out."),
     click.option("--shift", type=float, help="Profile shift in modules."),
@@ -84,10 +84,10 @@ def plan_job(job: Job, as_json: bool) -> None:
 
 @gearbox.command("simulate")
 @_job_options
-@click.option("--pattern", type=click.Choice(["forward", "dither", "reversals"]), required=True)
+@click.option("--pattern", type=of("pattern"), required=True)
 @click.option("--edges", type=click.IntRange(min=1), required=True, help="Encoder edges to run through.")
 @click.option("--start", type=click.IntRange(min=0), default=0, show_default=True, help="Count before the first edge.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the random reversals.")
+@click.option("--seed", type=of("seed"), default=0, show_default=True, help="Seed of the random reversals.")
 @plot("the errors over time")
 @JSON
 def simulate(

@@ -18,6 +18,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Anything, Content, Record, Text
 from gearmath.control.interface import RunStart
 from gearmath.control.store_place import check_local
 from gearmath.control.store_run import StoredRun, now
@@ -41,7 +43,8 @@ class MeasurementStore(Shown):
         self._one_at_a_time = threading.Lock()
 
     @staticmethod
-    def open(path: Path, create: bool = True) -> MeasurementStore:
+    @checked_call
+    def open(path: str | Path, create: bool = True) -> MeasurementStore:
         """Open a store, by default made where there is none.
 
         Raises InputError for a file that is no store, for a store of a newer version, a network share, a place that
@@ -82,6 +85,7 @@ class MeasurementStore(Shown):
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    @checked_call(start=Record("gearmath.control.interface", "RunStart", "a RunStart"))
     def begin_run(self, start: RunStart) -> StoredRun:
         """A new run, with all that it begins with. Raises InputError where that cannot be a run."""
         rows = _planned(start)
@@ -108,6 +112,7 @@ class MeasurementStore(Shown):
                 self.execute("INSERT INTO planned VALUES (?, ?, ?, ?, ?, ?, ?, ?)", run, *row)
         return StoredRun(self, run, start)
 
+    @checked_call
     def resume_run(self, run: int) -> StoredRun:
         """A run that is there and not complete, to go on with. Raises InputError where there is none such."""
         found = self.run(run)
@@ -118,6 +123,7 @@ class MeasurementStore(Shown):
             self.execute("INSERT INTO session VALUES (?, ?, ?, ?, ?, ?)", run, found.next_number("session"), *values)
         return found
 
+    @checked_call
     def run(self, run: int) -> StoredRun:
         """A run as it is kept, to be read. Raises InputError where there is none."""
         self._check(run)
@@ -148,6 +154,7 @@ class MeasurementStore(Shown):
         """All runs, the oldest first."""
         return [self.run(run) for (run,) in self.execute("SELECT run FROM run ORDER BY run")]
 
+    @checked_call
     def files(self, run: int) -> list[tuple[str, str, bytes, str]]:
         """Role (program, file), name, content and SHA-256 of what a run was begun with."""
         return self.execute(
@@ -156,6 +163,7 @@ class MeasurementStore(Shown):
             run,
         )
 
+    @checked_call(sql=Content(), values=Anything())
     def execute(self, sql: str, *values: Any) -> list[tuple]:
         """Run one statement with its values and give all rows. Raises ComputationError where SQLite refuses."""
         try:
@@ -163,6 +171,7 @@ class MeasurementStore(Shown):
         except sqlite3.Error as error:
             raise ComputationError(f"{self.path}: {error}") from error
 
+    @checked_call(failed=Text())
     @contextmanager
     def transaction(self, failed: str) -> Iterator[None]:
         """All or nothing, on the disk at the end. ``failed`` is what is said where SQLite, or the disk, refuses."""

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
 from gearmath.bevel.pair import load_pair
 from gearmath.control.run_start import CALIBRATION, MACHINE, SET
 from gearmath.control.store_run import StoredRun
@@ -45,6 +47,7 @@ class EvaluatedRun(Shown):
         return f"evaluated run {self.run.id}, {self.name}", [("points", len(self.file), "")]
 
 
+@checked_call(run=Record("gearmath.control.store_run", "StoredRun", "a run of a store, such as store.run(1)"))
 def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: None) -> EvaluatedRun:
     """Evaluate a run by what is stored with it, as ``gearmath touches`` and ``gearmath evaluate`` would.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from derivations.quantity import Quantity
 from gearmath.engine.run import runner
+from gearmath.errors import CallError, InputError
 from gearmath.shown import Shown, Shows
 
 
@@ -27,12 +28,19 @@ class Kernel(Shown):
     requires: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if not isinstance(self.function, ca.Function):
+            raise InputError(
+                f"function = {self.function!r}: must be a CasADi function; kernel(name) and lower make kernels"
+            )
+        for key in ("inputs", "outputs"):
+            if not all(isinstance(one, Quantity) for one in getattr(self, key) or ()):
+                raise InputError(f"{self.name}: {key}: must be a tuple of Quantity")
         for kind, quantities, names in (
             ("input", self.inputs, self.function.name_in()),
             ("output", self.outputs, self.function.name_out()),
         ):
             if [quantity.name for quantity in quantities] != names:
-                raise ValueError(
+                raise InputError(
                     f"{self.name}: {kind}s {names} of the function do not carry the names of its quantities"
                 )
 
@@ -51,19 +59,23 @@ class Kernel(Shown):
         such axis is the same for all points. Outputs have the axis in front if any argument has it. Arguments may be
         left out at the end where their quantities have a default.
         """
-        arrays = [np.asarray(argument, dtype=float) for argument in arguments]
+        try:
+            arrays = [np.asarray(argument, dtype=float) for argument in arguments]
+        except (TypeError, ValueError) as error:
+            names = ", ".join(quantity.name for quantity in self.inputs)
+            raise InputError(f"{self.name}: {error}; its arguments are arrays of numbers: {names}") from None
         left_out = self.inputs[len(arrays) :]
         if all(quantity.default is not None for quantity in left_out):
             arrays += [np.full(quantity.shape, quantity.default, dtype=float) for quantity in left_out]
         if len(arrays) != len(self.inputs):
-            raise TypeError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
+            raise CallError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
         many = [array.ndim > len(quantity.shape) for array, quantity in zip(arrays, self.inputs, strict=True)]
         is_batch = any(many)
         n = max((len(array) for array, is_many in zip(arrays, many, strict=True) if is_many), default=1)
         flats = []
         for array, is_many, quantity in zip(arrays, many, self.inputs, strict=True):
             if array.shape != (*((n,) if is_many else ()), *quantity.shape):
-                raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
+                raise InputError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
             flats.append(_by_columns(array, n if is_many else 1, quantity))
         if not any(many):
             many[:] = [True] * len(many)

@@ -5,18 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Truth
 from gearmath.bevel.contact.mesh import Mesh as Run
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.report import SIDES, figures, shown_runs, tolerance_figures
-from gearmath.bevel.contact.system import MOST_DEG, MOST_MM, Assembly
+from gearmath.bevel.contact.system import Assembly
 from gearmath.bevel.contact.tolerance import SEARCHES
 from gearmath.bevel.contact.tolerance import tolerance as search
 from gearmath.errors import InputError, about
-from gearmath.front.measured import Measurement
+from gearmath.front.measured import Measurement, measurement_in
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
 from gearmath.quality.contact.flank import MeasuredFlank
@@ -39,6 +42,7 @@ class Contact(Shown):
     runs: Mapping[str, Run]
     tolerances: Mapping[str, dict[str, Any] | None] = field(default_factory=dict)
 
+    @checked_call
     def to_dict(self, step: float = 1.0) -> dict[str, Any]:
         """As ``gearmath contact --json`` prints it; positions at multiples of ``step`` [degrees of the pinion]."""
         found = {}
@@ -73,9 +77,10 @@ class Contact(Shown):
         return html_table(f"contact at {self._assembly}", head, rows)
 
 
+@checked_call(tolerance=Truth())
 def contact(
     pair: GearSet,
-    *measured: Measurement,
+    *measured: Measurement | str | Path,
     v: float = 0.0,
     h: float = 0.0,
     j: float = 0.0,
@@ -85,22 +90,11 @@ def contact(
     begin: Begin = silent,
 ) -> Contact:
     """The contact of a pair; see :meth:`gearmath.GearSet.contact`."""
-    for side in sides:
-        if side not in SIDES:
-            raise InputError(f"sides: {side!r}: must be of {', '.join(SIDES)}")
-    for what, value, most, unit in (
-        ("v", v, MOST_MM, "mm"),
-        ("h", h, MOST_MM, "mm"),
-        ("j", j, MOST_MM, "mm"),
-        ("shaft", shaft, MOST_DEG, "degrees"),
-    ):
-        if not abs(value) <= most:
-            raise InputError(f"{what} = {value:g}: must lie between -{most:g} and {most:g} {unit}")
     for name in MEMBERS:
         pair.spec.member(name)
     flanks: dict[tuple[str, str], MeasuredFlank | None] = {}
     remarks: list[str] = []
-    for one in measured:
+    for one in (measurement_in(given, pair) for given in measured):
         with about(one.source):
             _check_nominal(pair, one)
             found, said = flanks_of(one.member.gear_set.spec, one.member.name, one.file)

@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from gearmath.bevel.identify.variables import reading
+from gearmath.arguments.call import checked_call
+from gearmath.bevel.identify.variables import NAMES, reading, variables_of
 from gearmath.bevel.pair import check_corrected
-from gearmath.errors import ComputationError, about
-from gearmath.front.measured import Evaluation, Measurement
+from gearmath.errors import ComputationError, InputError, about
+from gearmath.front.measured import Evaluation, Measurement, measurement_in
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, load_set
@@ -28,7 +29,7 @@ from gearmath.quality.uncertainty.corrected import noise_of_points, point_covari
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
 from gearmath.shown import Shown, Shows, html_table
-from gearmath.specs.bevel_set import MACHINE_SETTINGS
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
 from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ class Correction(Shown):
         """The member with the corrected settings; its nominal flanks stay what they were."""
         return self.gear_set.member(self.measurement.member.name)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the corrected set as TOML, the nominal settings under ``design``. Raises ComputationError for no pair.
 
@@ -152,6 +154,7 @@ class Correction(Shown):
         return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
 
 
+@checked_call
 def compensate(
     measured: Measurement,
     settings: str | Sequence[str] = "few",
@@ -163,14 +166,21 @@ def compensate(
     bounds: Bounds = "machine",
     root_limit: float = ROOT_LIMIT,
     noise_um: float | None = None,
-    mate: Measurement | None = None,
+    mate: Measurement | str | Path | None = None,
     thickness: float = 0.0,
     thickness_by: By = "work_rotation_offset",
     begin: Begin = silent,
 ) -> Correction:
     """Corrected settings of what was measured; see :meth:`Measurement.compensate`."""
     member, name = measured.member.spec, measured.member.name
-    moved = None if mate is None else _moved(measured, mate, registered)
+    moved = None
+    with about(measured.source):
+        chosen = _free(settings)
+    if mate is not None:
+        other = measurement_in(mate, measured.member.gear_set)
+        if other.member.name == name:
+            raise InputError(f"mate: is a measurement of the {name} too: that of the other member is wanted")
+        moved = _moved(measured, other, registered)
     progress = begin(STAGES + correcting.STAGES, "stage")
     evaluation = measured.evaluate(registered, rotated, progress)
     found = evaluation.found
@@ -180,7 +190,7 @@ def compensate(
             member,
             name,
             found.file,
-            _free(settings),
+            chosen,
             objective=objective,
             higher_order=higher_order,
             few=settings == "few",
@@ -204,10 +214,20 @@ def _moved(measured: Measurement, mate: Measurement, registered: bool) -> dict[s
         return moved_to_mate(measured.member.gear_set.spec, mate.member.name, found.file, measured.file)
 
 
+#: Names of several settings; None where they suit the cutting method.
+_CHOICES = {"few": None, "standard": None, "all": MACHINE_SETTINGS}
+
+
 def _free(settings: str | Sequence[str]) -> tuple[str, ...] | None:
     """The settings that may change; None for those that suit the cutting method."""
     if isinstance(settings, str):
-        return None if settings in ("few", "standard") else MACHINE_SETTINGS if settings == "all" else (settings,)
+        if settings in _CHOICES:
+            return _CHOICES[settings]
+        if settings not in NAMES:
+            known = ", ".join((*_CHOICES, *SETTINGS, NAMES[-1]))
+            raise InputError(f"settings = {settings!r}: must be one of {known}, or a coefficient of a motion")
+        return (settings,)
+    variables_of(settings, 1)  # refuses what is no setting, before any work
     return tuple(settings)
 
 

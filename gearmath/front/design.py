@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
 from gearmath.bevel.blank import BevelBlank, blank_of
 from gearmath.bevel.blank_table import TableRow, by_name, rows, set_fragment
 from gearmath.bevel.contact.mesh import Mesh
@@ -17,7 +18,7 @@ from gearmath.bevel.design.reverse_route import load_known, reversed_set
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
 from gearmath.front.progress import Begin, silent
-from gearmath.front.sets import GearSet
+from gearmath.front.sets import GearSet, set_of
 from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.blank_data import load_blank_data
 from gearmath.specs.design import load_design
@@ -50,7 +51,8 @@ class PairDesign(Shown):
         return self.gear_set.title, shown_runs(self.runs)
 
 
-def design(path: str | Path, gear: GearSet | None = None, begin: Begin = silent) -> PairDesign:
+@checked_call
+def design(path: str | Path, gear: GearSet | str | Path | None = None, begin: Begin = silent) -> PairDesign:
     """A pair that runs as the file of design data asks, or a pinion to a given ``gear``; docs/design.md.
 
     Raises InputError naming key, value and limit of what cannot be, ComputationError where no settings are found.
@@ -59,7 +61,7 @@ def design(path: str | Path, gear: GearSet | None = None, begin: Begin = silent)
     asked = load_design(source)
     progress = begin(1, "design")
     with about(source):
-        made, figures, runs = accepted(asked, str(source), None if gear is None else gear.spec)
+        made, figures, runs = accepted(asked, str(source), None if gear is None else set_of(gear).spec)
         progress(1)
     return PairDesign(GearSet(made.pair), figures, runs)
 
@@ -91,6 +93,7 @@ class FoundSettings(Shown):
         return f"settings of the {next(iter(self.gear_set.spec.members))}, {self.title}", figures
 
 
+@checked_call
 def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin = silent) -> FoundSettings:
     """The settings of the member with these flanks, and how well they make them, as ``gearmath design --reverse``.
 
@@ -137,6 +140,7 @@ class Blank(Shown):
         )
 
 
+@checked_call
 def load_blank(path: str | Path) -> Blank:
     """The blank of a file of design data, or a bundled one. Raises InputError naming key, value and limit.
 

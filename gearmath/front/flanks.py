@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
 from gearmath.shown import Shown, Shows
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 
@@ -30,17 +32,20 @@ class FlankSurface(Shown):
     file: FlankFile
 
     @classmethod
+    @checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"))
     def of(cls, member: Member, flank: str, file: FlankFile) -> FlankSurface:
         """The nominal points of a flank file as a grid."""
         rows, columns = (int(part) for part in file.header["grid"].split("x"))
         point, normal = (values.reshape(rows, columns, 3) for values in (file.point, file.normal))
         return cls(member, flank, point, normal, file)
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""
         write_flank_csv(Path(path), self.file)
         return Path(path)
 
+    @checked_call
     def to_text(self, path: str | Path) -> Path:
         """Write points and normals as plain text for other programs, a row ``x y z i j k`` each [mm]."""
         from gearmath.exchange.point_lines import write_points
@@ -90,6 +95,7 @@ class Tooth(Shown):
 
         return far_sides_note(self.member.spec, self.space)
 
+    @checked_call
     def to_stl(self, path: str | Path, whole_member: bool = True) -> int:
         """Write the closed solid of the member, or the surface of one space, as binary STL in mm; its triangles."""
         from gearmath.bevel.solid import member_triangles, space_triangles, write_stl

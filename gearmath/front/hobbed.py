@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
 from gearmath.front.progress import Begin, silent
 from gearmath.gearbox.hobbed.contributions import Contribution
 from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear
@@ -84,6 +85,7 @@ class HobbedGear(Shown):
         """As ``gearmath gearbox cut --json`` prints it: figures in um, dimensions in mm."""
         return cut_values(self.setup, self.gears, self.shares)
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the measured points of the first rule; docs/virtual_hobbing.md."""
         from gearmath.exchange.hobbed_csv import write_traces
@@ -91,6 +93,7 @@ class HobbedGear(Shown):
         write_traces(Path(path), self.setup.job, self.gear.found)
         return Path(path)
 
+    @checked_call
     def to_stl(self, path: str | Path, begin: Begin = silent) -> Path:
         """Write the gear, a closed solid with its flanks as cut, as binary STL in mm."""
         from gearmath.exchange.hobbed_stl import ALL, write_gear

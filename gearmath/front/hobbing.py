@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.composed import Either
+from gearmath.arguments.kinds import Number, Record, Text
+from gearmath.arguments.known import HOBBER
 from gearmath.errors import InputError
 from gearmath.front.hobbed import HobbedGear, HobbedThread
-from gearmath.front.machines import load_hobber
+from gearmath.front.machines import hobber_of, load_hobber
 from gearmath.front.progress import Begin, Progress, silent, unheard
 from gearmath.gearbox.hobbed.choice import MOST_CUTS, Choice
 from gearmath.gearbox.hobbed.choice import choose as search
@@ -30,9 +34,21 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_PER_TURN = Number(unit="mm per turn of the table")
+
 __all__ = ("Job", "choose", "export_teensy", "hob", "load_hobber", "plan")
 
 
+@checked_call(
+    machine=Record("gearmath.specs.hobbing", "HobbingMachine", "a hobbing machine or lathe"),
+    plan=Either(
+        (
+            Record("gearmath.gearbox.train", "GearboxPlan", ""),
+            Record("gearmath.gearbox.job", "ThreadPlan", ""),
+        ),
+        "must be the plan of a gear or of a thread",
+    ),
+)
 @dataclass(frozen=True, repr=False)
 class Job(Shown):
     """A job of the electronic gearbox; ``plan`` has exact ratio, rates against limits, what to set and measure."""
@@ -45,6 +61,7 @@ class Job(Shown):
         """Motor steps for each count of the encoder, exactly."""
         return self.plan.exact_pulse_ratio
 
+    @checked_call
     def simulate(
         self,
         pattern: Pattern = "forward",
@@ -65,6 +82,7 @@ class Job(Shown):
         kept = Trace(edges) if trace is None else trace
         return simulate_job(run_axes, self.plan.ratio, pattern, edges, seed, progress, kept.add, start)
 
+    @checked_call
     def thread(
         self,
         length: float = 100.0,
@@ -89,6 +107,7 @@ class Job(Shown):
         """As ``gearmath gearbox plan --json`` prints it; what is a fraction also exactly, as text."""
         return plain_numbers(asdict(self.plan))
 
+    @checked_call
     def plot(
         self,
         pattern: Pattern = "forward",
@@ -138,12 +157,26 @@ def plain_numbers(values: dict[str, Any]) -> dict[str, Any]:
     return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
 
 
+@checked_call(machine=HOBBER, feed=Either((_PER_TURN, Text()), _PER_TURN.words))
 def plan(
-    machine: HobbingMachine | str | Path, teeth: int | None = None, pitch: str | None = None, **options: Any
+    machine: HobbingMachine | str | Path,
+    teeth: int | None = None,
+    pitch: str | None = None,
+    *,
+    starts: int | None = None,
+    hob: str | None = None,
+    rpm: float | None = None,
+    run_up: float | None = None,
+    helix: float | None = None,
+    hand: Hand | None = None,
+    cut: FeedSense | None = None,
+    feed: float | str | None = None,
+    shift: float = 0.0,
+    pin: float | None = None,
 ) -> Job:
     """Plan a gear of so many ``teeth`` on a hobbing machine, or a thread of a ``pitch`` ("1.25mm", "8tpi") on a lathe.
 
-    ``options`` of a gear: starts, hob, rpm, run_up [s], helix [degrees] with hand ("right" or "left"), cut ("climb" or
+    Of a gear: starts, hob, rpm, run_up [s], helix [degrees] with hand ("right" or "left"), cut ("climb" or
     "conventional") and, where the machine has no encoder on it, feed [mm per turn of the table]; shift, pin; of a
     thread: starts, hand, rpm, run_up. Raises InputError naming the limit that the job would break.
 
@@ -151,81 +184,105 @@ def plan(
     >>> gm.hobbing.plan("hobbing_plewes.toml", teeth=17).plan.teeth
     17
     """
-    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
+    known = hobber_of(machine)
     if known.profile == "lathe":
         if pitch is None or teeth is not None:
             raise InputError(f"{known.name} is a lathe: pitch is needed, and no teeth")
-        return Job(known, plan_thread(known, pitch_of(pitch), **options))
+        _refuse_in_vain("for a thread", hob=hob, helix=helix, cut=cut, feed=feed, shift=shift or None, pin=pin)
+        first = 1 if starts is None else starts
+        return Job(known, plan_thread(known, pitch_of(pitch), first, hand or "right", rpm, run_up))
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
-    way, feed = options.pop("cut", "climb"), options.pop("feed", None)
-    return Job(known, plan_gear(known, teeth, **_with_helix(options, way, feed)))
+    if helix is None:
+        _refuse_in_vain("without helix", hand=hand, cut=cut, feed=feed)
+    lead = _helix(helix, hand, cut or "climb", feed)
+    return Job(known, plan_gear(known, teeth, starts, hob, rpm, lead, shift, pin, run_up))
 
 
+@checked_call(machine=HOBBER, feed=_PER_TURN)
 def hob(
     machine: HobbingMachine | str | Path,
     teeth: int,
     compare: Rule | None = None,
     begin: Begin = silent,
-    **options: Any,
+    *,
+    hob: str | None = None,
+    starts: int | None = None,
+    helix: float | None = None,
+    hand: Hand | None = None,
+    shift: float = 0.0,
+    feed: float = 0.5,
+    face_width: float | None = None,
+    rpm: float | None = None,
+    seconds: float = 0.0,
+    climb: bool = True,
+    rule: Rule = "exact",
+    hob_shift: float = 0.0,
 ) -> HobbedGear:
     """Cut a gear virtually, inspect it, and tell which part of the machine is to blame; docs/virtual_hobbing.md.
 
-    ``compare`` is a second rule, cut beside the first. ``options``: hob, starts, helix [degrees], hand, shift, feed,
-    face_width, rpm, seconds, climb, rule, hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming
-    the limit that the job would break.
+    ``compare`` is a second rule, cut beside the first. helix [degrees] has a hand; feed [mm per turn of the table],
+    face_width and hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming the limit that the job would
+    break.
     """
-    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
-    way = "climb" if options.get("climb", True) else "conventional"
-    feed = None if known.feed is not None else options.get("feed", 0.5)
-    prepared = setup(known, teeth, **_with_helix(options, way, feed))
+    known = hobber_of(machine)
+    if helix is None:
+        _refuse_in_vain("without helix", hand=hand)
+    lead = _helix(helix, hand, "climb" if climb else "conventional", None if known.feed is not None else feed)
+    prepared = setup(known, teeth, hob, starts, lead, shift, feed, face_width, rpm, seconds, climb, rule, hob_shift)
     rules: tuple[Rule, ...] = tuple(dict.fromkeys(rule for rule in (prepared.train.rule, compare) if rule))
     progress = begin((len(rules) + len(sources(prepared.train))) * prepared.where.points, "point")
     gears = tuple(cut_and_inspect(prepared, rule, progress) for rule in rules)
     return HobbedGear(prepared, gears, blame(prepared, gears[0], progress))
 
 
+@checked_call(machine=HOBBER)
 def choose(
     machine: HobbingMachine | str | Path,
     wanted: int,
     module: float,
     teeth: int,
     begin: Begin = silent,
-    **options: Any,
+    *,
+    face_width: float | None = None,
+    helix: float | None = None,
+    hand: Hand | None = None,
 ) -> Choice:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
 
-    Normal ``module`` [mm]; ``options``: face_width [mm], helix [degrees], hand. Returns ``parts`` with microsteps,
-    lines, gashes and feed [mm per turn of the table], the ``gear`` that they cut with its figures and classes, and
-    ``rpm``, the highest speed of the hob. Raises InputError where no class can be given, ComputationError where the
-    finest parts do not reach it.
+    Normal ``module`` and face_width [mm]; helix [degrees] has a hand. Returns ``parts`` with microsteps, lines, gashes
+    and feed [mm per turn of the table], the ``gear`` that they cut with its figures and classes, and ``rpm``, the
+    highest speed of the hob. Raises InputError where no class can be given, ComputationError where the finest parts do
+    not reach it.
     """
-    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
-    return search(known, wanted, module, teeth, **_with_helix(options), progress=begin(MOST_CUTS, "cut"))
+    known = hobber_of(machine)
+    if helix is None:
+        _refuse_in_vain("without helix", hand=hand)
+    lead = _helix(helix, hand, "climb", None)
+    return search(known, wanted, module, teeth, face_width, lead, progress=begin(MOST_CUTS, "cut"))
 
 
+@checked_call(machine=HOBBER)
 def export_teensy(machine: HobbingMachine | str | Path, folder: str | Path) -> list[str]:
     """Write the whole Teensy sketch of a hobbing machine or lathe; the names of its files. Raises InputError."""
     from gearmath.export.teensy import export_teensy as export
 
-    return list(export(machine if isinstance(machine, HobbingMachine) else load_hobber(machine), Path(folder)))
+    return list(export(hobber_of(machine), Path(folder)))
 
 
-def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | str | None = None) -> dict[str, Any]:
-    """The options with one helix of its angle [degrees] and hand. Raises InputError where it is none."""
-    helix, hand = options.get("helix"), options.get("hand")
-    rest = {key: value for key, value in options.items() if key != "hand"}
-    if helix is None:
-        if hand is not None:
-            raise InputError(f"hand = {hand!r}: has no meaning without helix")
-        return rest
-    hand = "right" if hand is None else hand
-    if hand not in get_args(Hand):
-        raise InputError(f"hand = {hand!r}: must be 'right' or 'left'")
-    if cut not in get_args(FeedSense):
-        raise InputError(f"cut = {cut!r}: must be 'climb' or 'conventional'")
+def _refuse_in_vain(where: str, **given: object) -> None:
+    """Raise InputError for an argument that would change nothing."""
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(f"{name} = {value!r}: has no meaning {where}")
+
+
+def _helix(angle: float | None, hand: Hand | None, cut: FeedSense, feed: float | str | None) -> Helix | None:
+    """The helix of an angle [degrees], none without it. Raises InputError where it is none."""
+    if angle is None:
+        return None
     try:
         per_turn = None if feed is None else Fraction(str(feed))
     except (ValueError, ZeroDivisionError):
         raise InputError(f"feed = {feed!r}: must be a number of mm per turn of the table") from None
-    return rest | {"helix": Helix(float(helix), cast("Hand", hand), cast("FeedSense", cut), per_turn)}
+    return Helix(float(angle), hand or "right", cut, per_turn)

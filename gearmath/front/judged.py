@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Place
 from gearmath.errors import InputError, about
 from gearmath.files import csv_text, write_text
 from gearmath.front.corrected import effects_um
@@ -66,6 +68,7 @@ class Uncertainty(Shown):
             "remarks": [*found.first, *self.remarks],
         }
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the figures, a line each in its own unit, with the columns of ``figures`` in :meth:`to_dict`."""
         rows = [one.as_dict() for one in self.figures]
@@ -92,6 +95,7 @@ class Uncertainty(Shown):
         return html_table(f"uncertainties from {self.source}", names, rows)
 
 
+@checked_call(machine=Place(), probe=Place())
 def uncertainty(
     measured: Measurement,
     sigma_um: float | None = None,
@@ -105,7 +109,7 @@ def uncertainty(
     seed: int = 0,
     workers: int | None = None,
     executor: Executor | None = None,
-    resume: Path | None = None,
+    resume: str | Path | None = None,
     begin: Begin = silent,
 ) -> Uncertainty:
     """Standard uncertainties of everything that a measurement says; see :meth:`Measurement.uncertainty`."""
@@ -117,7 +121,8 @@ def uncertainty(
         figures = figures_of(file, member, evaluation.found)
         covariance, source = covariance_of(file, member, sigma_um, model, machine, probe)
     heard = begin(draws, "draw")
-    sure = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, heard)
+    kept = None if resume is None else Path(resume)
+    sure = uncertain_figures(figures, covariance, draws, seed, executor, workers, kept, heard)
     _, settings, effects, remarks = uncertain_correction(member, file, evaluation.found, covariance, sigma_um)
     return Uncertainty(evaluation, source, (*sure, *settings), effects, tuple(remarks), draws, seed)
 

@@ -9,11 +9,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.composed import Either
+from gearmath.arguments.kinds import Record, Text
+from gearmath.arguments.known import MEMBER, ORIGIN, SET
 from gearmath.errors import InputError, about
 from gearmath.files import csv_text, named, write_text
 from gearmath.front.member import Member
 from gearmath.front.progress import Progress, unheard
-from gearmath.front.sets import GearSet
+from gearmath.front.sets import GearSet, set_of
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.quality.uncertainty.corrected import point_covariance
@@ -44,6 +49,7 @@ _FIRST = {
 _FEW_DRAWS = 2000
 
 
+@checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"), source=ORIGIN)
 @dataclass(frozen=True, repr=False)
 class Measurement(Shown):
     """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md.
@@ -56,24 +62,27 @@ class Measurement(Shown):
     source: Path | None = None
 
     @staticmethod
+    @checked_call
     def from_touches(
         path: str | Path,
-        pair: GearSet,
-        machine: Machine | None = None,
-        probe: Calibration | None = None,
+        pair: GearSet | str | Path,
+        machine: Machine | str | Path | None = None,
+        probe: Calibration | str | Path | None = None,
         run: int | None = None,
     ) -> Measurement:
         """Raw touches of a probing program as corrected contact points and deviations [mm].
 
         By default those of the last run, which must be whole. Raises InputError naming file and point.
         """
-        from gearmath.front.machines import load_machine, load_probe
+        from gearmath.front.machines import machine_of, probe_of
         from gearmath.quality.evaluation.measured_run import measured_run
 
-        made = measured_run(Path(path), pair.spec, (machine or load_machine()).spec, probe or load_probe(), run)
+        pair = set_of(pair)
+        made = measured_run(Path(path), pair.spec, machine_of(machine).spec, probe_of(probe), run)
         return Measurement(pair.member(made.touches.member), made.file)
 
     @staticmethod
+    @checked_call
     def from_points(
         paths: Mapping[tuple[str, int], str | Path],
         member: Member,
@@ -102,6 +111,7 @@ class Measurement(Shown):
         """Deviations (n,) [mm] along the outward normals, positive where metal is left on."""
         return self.file.deviation
 
+    @checked_call
     def evaluate(self, registered: bool = True, rotated: bool = True, progress: Progress = unheard) -> Evaluation:
         """Pitch, runout, thickness and topography, clamping and rotation of the work taken out.
 
@@ -139,6 +149,7 @@ class Measurement(Shown):
 
         return uncertainty(self, sigma_um, model, draws, **options)
 
+    @checked_call
     def share_stock(self, advance: bool = False, least: float = 0.0) -> Stock:
         """How the precut blank that was measured must stand so that both flanks share its stock [rad, mm].
 
@@ -151,18 +162,34 @@ class Measurement(Shown):
         with about(self.source):
             return share_stock(self.member.spec, self.member.name, self.file, advance, least)
 
-    def report(self, path: str | Path, *mate: Measurement, again: Sequence[Measurement] = (), **head: str) -> Path:
+    @checked_call(**dict.fromkeys(("part_number", "date", "operator", "machine", "probe"), Text()))
+    def report(
+        self,
+        path: str | Path,
+        *mate: Measurement | str | Path,
+        again: Sequence[Measurement | str | Path] = (),
+        part_number: str | None = None,
+        date: str | None = None,
+        operator: str | None = None,
+        machine: str | None = None,
+        probe: str | None = None,
+    ) -> Path:
         """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
 
-        ``again``: members measured again after the correction. ``head``: part_number, date, operator, machine, probe.
-        Returns the path. Raises InputError where the mate is of the same member, or ``again`` is of another.
+        ``again``: members measured again after the correction. Its head has part number, date, operator, machine and
+        probe, or those that the file states. Returns the path. Raises InputError where the mate is of the same member,
+        or ``again`` is of another.
         """
         from gearmath.front.judged import inspection
 
-        sheet = inspection((self, *mate), [head] * (1 + len(mate)), again)
+        mates, seconds = ([measurement_in(one, self.member.gear_set) for one in each] for each in (mate, again))
+        said = {"part_number": part_number, "date": date, "operator": operator, "machine": machine, "probe": probe}
+        head = {key: text for key, text in said.items() if text is not None}
+        sheet = inspection((self, *mates), [head] * (1 + len(mates)), seconds)
         write_text(Path(path), sheet.html)
         return Path(path)
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""
         write_flank_csv(Path(path), self.file)
@@ -203,13 +230,24 @@ def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measu
     return Measurement(pair.member(member or file.member), file, Path(path))
 
 
-def load_measurement(path: str | Path, member: Member | GearSet) -> Measurement:
-    """Read a measured flank CSV of a member, or of the member of a set that the file names. Raises InputError."""
+@checked_call(member=Either((MEMBER, SET), "must be a member, a gear set, or the file of a set"))
+def load_measurement(path: str | Path, member: Member | GearSet | str | Path) -> Measurement:
+    """Read a measured flank CSV of a member, or of the member of a set that the file names.
+
+    Raises InputError, also where it was measured against other nominal flanks.
+    """
     file = read_flank_csv(Path(path))
-    one = member.member(file.member) if isinstance(member, GearSet) else member
+    one = member if isinstance(member, Member) else set_of(member).member(file.member)
     if file.member != one.name:
         raise InputError(f"{path}: member = {file.member}: the measurement of the {one.name} is wanted")
+    with about(Path(path)):
+        check_belongs(one.spec, one.name, file)
     return Measurement(one, file, Path(path))
+
+
+def measurement_in(given: Measurement | str | Path, pair: GearSet) -> Measurement:
+    """A measurement, or that of a file, of the member of a pair that the file names."""
+    return given if isinstance(given, Measurement) else load_measurement(given, pair)
 
 
 @dataclass(frozen=True, repr=False)
@@ -234,6 +272,7 @@ class Evaluation(Shown):
         """As ``gearmath evaluate --json`` prints it; lengths in µm where the name says so."""
         return self.found.as_dict()
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write all figures of :meth:`to_dict` as lines ``figure,value``, the name of a figure as the way to it."""
         write_text(Path(path), csv_text(("figure", "value"), named(self.to_dict())))
@@ -245,6 +284,7 @@ class Evaluation(Shown):
 
         return evaluation_figure(self.title, self.found)
 
+    @checked_call
     def uncertainties(self, sigma_um: float | None = None) -> list[Uncertain]:
         """The figures with their standard uncertainties, from few draws: of ``sigma_um``, or else by u_um of the file.
 

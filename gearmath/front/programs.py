@@ -7,11 +7,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
+from gearmath.arguments.known import KNOWN
 from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.errors import InputError
 from gearmath.files import write_text
-from gearmath.front.machines import Machine, load_machine
-from gearmath.front.measured import Measurement
+from gearmath.front.machines import Machine, load_machine, shop_of
+from gearmath.front.measured import Measurement, load_measurement
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, Progress, silent, unheard
 from gearmath.machine.bodies.cutter import cutter_of
@@ -58,6 +61,10 @@ class Judgement(Shown):
         return "the machine must not run it" if self.faults else "the machine may run it", figures
 
 
+@checked_call(
+    machine=Record("gearmath.front.machines", "Machine", "a machine"),
+    made=Record("gearmath.machine.judging.checked", "CheckedCut", "the plan of a program"),
+)
 @dataclass(frozen=True, repr=False)
 class Program(Shown):
     """The text of a program for a member on a machine, and its name on the control or in its file.
@@ -76,11 +83,13 @@ class Program(Shown):
         """How many blocks the control runs."""
         return of_text(self.text).block_count(self.text)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the program, in one step; its file should be called ``name``.MPF, or .ngc for LinuxCNC."""
         write_text(Path(path), self.text)
         return Path(path)
 
+    @checked_call
     def sheet(self, file: str) -> str:
         """The set-up sheet of the program in a ``file`` of this name: HTML that prints on A4.
 
@@ -95,8 +104,9 @@ class Program(Shown):
         facts = SetupFacts.of(self.made.plan, PLUNGE_FEED)
         return setup_sheet(facts, file, timing(self.path, self.machine.spec), of_text(self.text).sheet)
 
+    @checked_call
     def mill(
-        self, shop: SimulatedMachine | None = None, progress: Progress = unheard, number: int | None = None
+        self, shop: SimulatedMachine | str | Path | None = None, progress: Progress = unheard, number: int | None = None
     ) -> Measurement:
         """The deviations [mm] that the program leaves: both flanks of tooth 0, the reference point of all others.
 
@@ -104,7 +114,7 @@ class Program(Shown):
         measured as that shop does. ``progress`` is called for every flank. Raises InputError where a flank is left
         uncut, and where it is measured without a shop.
         """
-        member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        member, name, machine, shop = self.member.spec, self.member.name, self.machine.spec, shop_of(shop)
         if number is not None and shop is None:
             raise InputError("a measurement needs the file that says how the member sits and what the probe does")
         narrowest = None if member.cutting == "completing" else self.space
@@ -122,7 +132,8 @@ class Program(Shown):
             file = measure_member(left, member, name, shop, number)
         return Measurement(self.member, file)
 
-    def judge(self, milled: Measurement | None = None, begin: Begin = silent) -> Judgement:
+    @checked_call
+    def judge(self, milled: Measurement | str | Path | None = None, begin: Begin = silent) -> Judgement:
         """What the machine must not run: travel, speed, collisions, modes, metal that is left or gouged.
 
         Returns ``faults`` and ``remarks``, a sentence each, and ``left``, what is left of the metal: ``left.tolerance``
@@ -130,6 +141,8 @@ class Program(Shown):
         such a machine, to be asked once.
         """
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        if isinstance(milled, str | Path):
+            milled = load_measurement(milled, self.member)
         known = None if milled is None else milled.file
         progress = begin(member.teeth, "space")
         left = metal_faults(self.read, self.path, self.runs, member, name, machine, self.space, progress, known)
@@ -144,10 +157,11 @@ class Program(Shown):
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
 
+    @checked_call(tolerance=KNOWN["report_tolerance"])
     def report(
         self,
         tolerance: float = 1e-3,
-        shop: SimulatedMachine | None = None,
+        shop: SimulatedMachine | str | Path | None = None,
         begin: Begin = silent,
         flank_tolerance: float | None = None,
     ) -> MillingReport:
@@ -160,7 +174,7 @@ class Program(Shown):
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
 
-        member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        member, name, machine, shop = self.member.spec, self.member.name, self.machine.spec, shop_of(shop)
         corrected = shop is None and any(member.flank(flank).design for flank in FLANKS)
         progress = begin(5 * member.teeth * (1 + corrected), "surface")
         return milling_report(

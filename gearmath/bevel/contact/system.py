@@ -31,10 +31,6 @@ _SIDES = 2
 COUNT = _SIDES * len(BORDERS)
 
 
-#: Displacement [mm] and growth of the shaft angle [degrees] beyond which no assembly is meant.
-MOST_MM, MOST_DEG = 50.0, 10.0
-
-
 @dataclass(frozen=True)
 class Assembly:
     """V, H, J [mm] and the growth of the shaft angle [rad], with the signs of chapter 25."""
