@@ -40,6 +40,7 @@ from gearmath.quality.contact.pair import MeasuredPair, flanks_of
 from gearmath.quality.correction.member import correct
 from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch
 from gearmath.quality.evaluation.topography import Topography, evaluate_topography
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
@@ -56,8 +57,8 @@ HOBBING_MACHINE, HOBBED_TEETH, EDGES = "hobbing_plewes.toml", 17, 2_000_000
 Say = Callable[[str], object]
 
 
-@dataclass(frozen=True)
-class MemberResult:
+@dataclass(frozen=True, repr=False)
+class MemberResult(Shown):
     """True state of one member, without probe noise, after the first cut and after the corrected one: ``cut``."""
 
     member: str
@@ -78,6 +79,13 @@ class MemberResult:
         """F_p, the larger of both flanks, before and after [mm]."""
         first, second = (max(p.total for p in pitches) for pitches in (self.pitch_before, self.pitch_after))
         return first, second
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        profile, pitch = ([1000 * value for value in values] for values in (self.profile, self.cumulative_pitch))
+        return f"{self.member}, before and after the correction", [
+            ("largest profile deviation", profile, "um"),
+            ("F_p", pitch, "um"),
+        ]
 
 
 @checked_call

@@ -66,6 +66,7 @@ KNOWN: dict[str, Kind] = {
     **dict.fromkeys(("pair", "gear_set", "gear"), SET),
     "member": MEMBER,
     **dict.fromkeys(("measured", "mate", "milled"), MEASUREMENT),
+    "again": Each(MEASUREMENT, "must be a list of measurements, or of their files"),
     "machine": MACHINE,
     "probe": PROBE,
     "shop": SHOP,

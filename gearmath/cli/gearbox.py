@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import asdict
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -78,7 +77,7 @@ def plan_job(job: Job, as_json: bool) -> None:
     from gearmath.cli.gearbox_text import plan_text
 
     if as_json:
-        echo_json(_values(job.to_dict()))
+        echo_json(job.to_dict())
     else:
         click.echo(plan_text(job.plan, job.machine))
 
@@ -104,6 +103,7 @@ def simulate(
     from tqdm import tqdm
 
     from gearmath.cli.gearbox_text import simulation_text
+    from gearmath.front.hobbing import plain_numbers
     from gearmath.gearbox.simulation import Trace
 
     trace, plan = Trace(edges), job.plan
@@ -113,7 +113,7 @@ def simulate(
         save_plot(job.plot(trace=trace), picture, as_json)
     if as_json:
         terms = ("steps_numerator", "steps_denominator", "feed_numerator")
-        echo_json(_values({key: getattr(plan, key) for key in terms} | asdict(result)))
+        echo_json(plain_numbers({key: getattr(plan, key) for key in terms} | asdict(result)))
     else:
         click.echo(simulation_text(result, plan))
 
@@ -136,9 +136,3 @@ def _plan(machine: HobbingMachine, options: dict[str, Any]) -> Job:
             if key in given:
                 raise click.UsageError(f"--{key} has no meaning without --helix")
     return plan(machine, **given)
-
-
-def _values(values: dict[str, Any]) -> dict[str, Any]:
-    """For JSON: a fraction as number, and exactly beside it."""
-    exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
-    return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact

@@ -25,6 +25,7 @@ from gearmath.control.store_place import check_local
 from gearmath.control.store_run import StoredRun, now
 from gearmath.control.store_schema import prepare
 from gearmath.errors import ComputationError, InputError
+from gearmath.shown import Shown, Shows
 from gearmath.version import __version__
 
 #: Columns of the touch file before and after the cells that say where a point is, and these cells.
@@ -34,7 +35,7 @@ PLACES = (("member", "flank", "tooth", "row", "col"), ("target",))
 _PATIENCE = 10.0
 
 
-class MeasurementStore:
+class MeasurementStore(Shown):
     """A store that is open, by a connection that :func:`prepare` has set."""
 
     def __init__(self, connection: Any, path: Path) -> None:
@@ -205,6 +206,9 @@ class MeasurementStore:
         sha256 = hashlib.sha256(content).hexdigest()
         self.execute("INSERT OR IGNORE INTO file VALUES (?, ?)", sha256, content)
         self.execute("INSERT INTO run_file VALUES (?, ?, ?, ?)", run, role, name, sha256)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return "measurement store", [("file", self.path.name, "")]
 
 
 def _planned(start: RunStart) -> list[tuple]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearmath.control.interface import Alarm, RunStart, Touch
 from gearmath.errors import ComputationError, InputError
+from gearmath.shown import Shown, Shows
 from gearmath.version import __version__
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 COMPLETE = "complete"
 
 
-class StoredRun:
+class StoredRun(Shown):
     """One run of a store: ``id`` is its number, ``start`` what it was begun with."""
 
     def __init__(self, store: MeasurementStore, run: int, start: RunStart) -> None:
@@ -137,6 +138,10 @@ class StoredRun:
 
     def _name(self, point: int) -> str:
         return f"{self.store.path}: run {self.id}, point {point}"
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        points = len(self.start.points)
+        return f"run {self.id} of {self.start.program}", [("control", self.start.control, ""), ("points", points, "")]
 
 
 def now() -> str:

@@ -10,10 +10,11 @@ import numpy as np
 from derivations.quantity import Quantity
 from gearmath.engine.run import runner
 from gearmath.errors import CallError, InputError
+from gearmath.shown import Shown, Shows
 
 
-@dataclass(frozen=True)
-class Kernel:
+@dataclass(frozen=True, repr=False)
+class Kernel(Shown):
     """A :class:`casadi.Function` with the meaning of its arguments: what ``export`` ships and others compose.
 
     Inputs and outputs of ``function`` have the names and shapes of ``inputs`` and ``outputs``, in this order.
@@ -88,6 +89,10 @@ class Kernel:
     def expand(self) -> Kernel:
         """The same kernel as one flat graph of scalar operations."""
         return Kernel(self.function.expand(), self.description, self.inputs, self.outputs, self.source, self.requires)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        given, made = ((q.name for q in quantities) for quantities in (self.inputs, self.outputs))
+        return self.name, [("of", ", ".join(given), ""), ("gives", ", ".join(made), ""), ("what", self.description, "")]
 
 
 def _by_columns(array: np.ndarray, n: int, quantity: Quantity) -> np.ndarray:

@@ -16,7 +16,7 @@ from gearmath.bevel.contact.mesh import Mesh as Run
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.outcome_limits import SEARCHES as CHANGES
 from gearmath.bevel.contact.outcome_limits import outcome_limits
-from gearmath.bevel.contact.report import SIDES, figures, tolerance_figures
+from gearmath.bevel.contact.report import SIDES, figures, shown_runs, tolerance_figures
 from gearmath.bevel.contact.system import Assembly
 from gearmath.bevel.contact.tolerance import SEARCHES
 from gearmath.bevel.contact.tolerance import tolerance as search
@@ -24,17 +24,17 @@ from gearmath.errors import InputError, about
 from gearmath.front.measured import Measurement, measurement_in
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet
-from gearmath.front.tables import html_table
 from gearmath.quality.contact.flank import MeasuredFlank
 from gearmath.quality.contact.pair import MeasuredPair, flanks_of
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class Contact:
+@dataclass(frozen=True, repr=False)
+class Contact(Shown):
     """A pair in contact: ``runs`` has the exact contact of each side, ``drive`` and ``coast``, in mm and rad.
 
     ``tolerances`` [mm] say by side how far V and H may go until the pattern reaches an edge, and until the
@@ -61,13 +61,23 @@ class Contact:
 
         return contact_figure(self.runs, {side: self.tolerances.get(side) for side in self.runs})
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return f"contact at {self._assembly}", shown_runs(self.runs)
+
+    @property
+    def _assembly(self) -> str:
+        """V, H, J and the growth of the shaft angle that it was computed at."""
+        at = next((run.assembly for run in self.runs.values()), Assembly().vector)
+        lengths = ", ".join(f"{name} = {value:g}" for name, value in zip("VHJ", at, strict=False))
+        return f"{lengths} mm" + (f", shaft angle {math.degrees(at[3]):+g}°" if at[3] else "")
+
     def _repr_html_(self) -> str:
         rows = [
             [side, found["outcome"], found["contact_ratio"], found["peak_to_peak_arcsec"], found["pattern"]["share"]]
             for side, found in self.to_dict(step=15.0).items()
         ]
         head = ["side", "outcome", "contact ratio", "transmission error (arcsec)", "part of the flank in the pattern"]
-        return html_table("contact", head, rows)
+        return html_table(f"contact at {self._assembly}", head, rows)
 
 
 @checked_call(tolerance=Truth())

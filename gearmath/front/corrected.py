@@ -14,11 +14,11 @@ from gearmath.arguments.call import checked_call
 from gearmath.bevel.identify.variables import NAMES, reading, variables_of
 from gearmath.bevel.pair import check_corrected
 from gearmath.errors import ComputationError, InputError, about
-from gearmath.front.measured import Evaluation, Measurement, measurement_in
+from gearmath.front.evaluated import Evaluation
+from gearmath.front.measured import Measurement, measurement_in
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, load_set
-from gearmath.front.tables import html_table
 from gearmath.quality.correction import member as correcting
 from gearmath.quality.correction.ease_off import moved_to_mate
 from gearmath.quality.correction.member import ROOT_LIMIT
@@ -29,6 +29,7 @@ from gearmath.quality.evaluation.member import STAGES
 from gearmath.quality.uncertainty.corrected import noise_of_points, point_covariance
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
 from gearmath.specs.set_text import save_corrected
 
@@ -38,8 +39,8 @@ if TYPE_CHECKING:
     from gearmath.quality.uncertainty.settings import Effect
 
 
-@dataclass(frozen=True)
-class Correction:
+@dataclass(frozen=True, repr=False)
+class Correction(Shown):
     """Corrected settings of a measured member: ``found`` has settings (12,) of each flank in mm and rad.
 
     ``evaluation`` is what they correct; ``noise_um`` and ``root_limit`` [mm] as they were asked for.
@@ -139,6 +140,14 @@ class Correction:
                 for flank, (before, after) in self.rms.items()
             },
         }
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            (f"{flank} RMS", f"{1000 * before:.4g} to {1000 * after:.4g}", "um")
+            for flank, (before, after) in self.rms.items()
+        ]
+        figures += [(f"{flank} {name}", change, reading(name)[1]) for flank, name, change in self.changes]
+        return f"correction of the {self.measurement.member.name}", figures
 
     def _repr_html_(self) -> str:
         rows = [[flank, name, change] for flank, name, change in self.changes]

@@ -11,6 +11,7 @@ from gearmath.arguments.call import checked_call
 from gearmath.bevel.blank import BevelBlank, blank_of
 from gearmath.bevel.blank_table import TableRow, by_name, rows, set_fragment
 from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.contact.report import shown_runs
 from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import load_known, reversed_set
@@ -18,7 +19,7 @@ from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, set_of
-from gearmath.front.tables import html_table
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.blank_data import load_blank_data
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class PairDesign:
+@dataclass(frozen=True, repr=False)
+class PairDesign(Shown):
     """A designed pair; ``figures`` has what was asked and found, ``runs`` the exact contact of each side."""
 
     gear_set: GearSet
@@ -45,6 +46,9 @@ class PairDesign:
         from gearmath.plot.contact import contact_figure
 
         return contact_figure(dict(self.runs))
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return self.gear_set.title, shown_runs(self.runs)
 
 
 @checked_call
@@ -62,8 +66,8 @@ def design(path: str | Path, gear: GearSet | str | Path | None = None, begin: Be
     return PairDesign(GearSet(made.pair), figures, runs)
 
 
-@dataclass(frozen=True)
-class FoundSettings:
+@dataclass(frozen=True, repr=False)
+class FoundSettings(Shown):
     """The settings of a member that was measured: ``found`` says by flank how well they make its points [mm].
 
     ``title`` is that of the file of its blank.
@@ -80,6 +84,13 @@ class FoundSettings:
         (name,) = self.gear_set.spec.members
         flanks = {flank: found.as_dict() for flank, found in self.found.flanks.items()}
         return {"member": name, **stated, **flanks}
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = []
+        for flank, found in self.found.flanks.items():
+            figures.append((f"{flank}: RMS", 1000 * found.rms, "um"))
+            figures += [(f"{flank}: largest in size", 1000 * float(abs(found.after).max()), "um")]
+        return f"settings of the {next(iter(self.gear_set.spec.members))}, {self.title}", figures
 
 
 @checked_call
@@ -98,8 +109,8 @@ def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin =
     return FoundSettings(known.title, GearSet(found), how_well)
 
 
-@dataclass(frozen=True)
-class Blank:
+@dataclass(frozen=True, repr=False)
+class Blank(Shown):
     """The blank of a pair: ``spec`` has its figures to ISO 23509 in mm and rad."""
 
     title: str
@@ -118,11 +129,14 @@ class Blank:
         """The part of a gear set file that the blank is, TOML."""
         return set_fragment(self.spec)
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return f"blank, {self.title}", [(row.name.replace("_", " "), row.values, row.unit) for row in self.rows]
+
     def _repr_html_(self) -> str:
         return html_table(
             self.title,
             ["figure", "symbol", "unit", "value"],
-            [[row.name.replace("_", " "), row.symbol, row.unit, ", ".join(map(str, row.values))] for row in self.rows],
+            [[row.name.replace("_", " "), row.symbol, row.unit, row.values] for row in self.rows],
         )
 
 

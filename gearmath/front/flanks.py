@@ -11,7 +11,7 @@ import numpy as np
 
 from gearmath.arguments.call import checked_call
 from gearmath.arguments.kinds import Record
-from gearmath.front.tables import html_table
+from gearmath.shown import Shown, Shows
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from gearmath.front.member import Member
 
 
-@dataclass(frozen=True)
-class FlankSurface:
+@dataclass(frozen=True, repr=False)
+class FlankSurface(Shown):
     """Points (rows, columns, 3) [mm] and outward unit normals of one flank, in the work frame; ``file`` is its CSV."""
 
     member: Member
@@ -71,9 +71,17 @@ class FlankSurface:
         axes.set_title(f"{self.member.name}, {self.flank} flank")
         return figure
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        rows, columns, _ = self.point.shape
+        figures: list[Shows] = [("rows", rows, ""), ("columns", columns, "")]
+        radius = np.hypot(self.point[..., 0], self.point[..., 1])
+        for name, values in (("z_w", self.point[..., 2]), ("radius", radius)):
+            figures.append((name, f"{values.min():.6g} to {values.max():.6g}", "mm"))
+        return f"{self.flank} flank of the {self.member.name}", figures
 
-@dataclass(frozen=True)
-class Tooth:
+
+@dataclass(frozen=True, repr=False)
+class Tooth(Shown):
     """A whole tooth space; ``figures`` are thickness, top land and so on [mm] by name."""
 
     member: Member
@@ -100,5 +108,11 @@ class Tooth:
         """The figures [mm] by name."""
         return dict(self.figures)
 
-    def _repr_html_(self) -> str:
-        return html_table(f"tooth of the {self.member.name}", ["figure", "mm"], list(self.figures.items()))
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            (name.removesuffix("_mm").replace("_", " "), value, "mm")
+            if name.endswith("_mm")
+            else (name.replace("_", " "), round(value), "")
+            for name, value in self.figures.items()
+        ]
+        return f"tooth space of the {self.member.name}", figures

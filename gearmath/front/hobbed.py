@@ -1,4 +1,4 @@
-"""What the electronic gearbox would cut: threads and gears, inspected."""
+"""What the electronic gearbox would cut: a gear with its inspection, or a thread."""
 
 from __future__ import annotations
 
@@ -13,13 +13,14 @@ from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear
 from gearmath.gearbox.hobbed.thread import ThreadTrace
 from gearmath.gearbox.hobbed.values import cut_values
 from gearmath.gearbox.job import ThreadPlan
+from gearmath.shown import Shown, Shows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class HobbedThread:
+@dataclass(frozen=True, repr=False)
+class HobbedThread(Shown):
     """The thread that the gearbox would cut: ``traces`` have where the carriage is too far [mm], one of each rule."""
 
     plan: ThreadPlan
@@ -50,9 +51,17 @@ class HobbedThread:
 
         return thread_figure(self.plan.machine, list(self.traces))
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = []
+        for trace in self.traces:
+            figures.append((f"{trace.rule}: total", 1000 * trace.total, "um"))
+            figures += [(f"{trace.rule}: single lead", 1000 * trace.single_lead, "um")]
+            figures += [(f"{trace.rule}: drift", 1000 * trace.drift, "um")]
+        return f"thread of {float(self.plan.pitch):g} mm on the {self.plan.machine}", figures
 
-@dataclass(frozen=True)
-class HobbedGear:
+
+@dataclass(frozen=True, repr=False)
+class HobbedGear(Shown):
     """The gear that the gearbox would cut: ``gears`` have its inspection and classes, one of each rule; ``shares`` says
     which part of the machine is to blame.
     """
@@ -100,3 +109,9 @@ class HobbedGear:
         from gearmath.plot.hobbed import inspection_figure
 
         return inspection_figure(self.title, [(gear.rule, gear.found) for gear in self.gears])
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [(f"{gear.rule}: class", gear.accuracy_class, "") for gear in self.gears]
+        for gear in self.gears:
+            figures += [(f"{gear.rule}: {one.figure}", one.value_um, "um") for one in gear.classes]
+        return self.title, figures

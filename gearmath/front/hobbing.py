@@ -15,7 +15,6 @@ from gearmath.errors import InputError
 from gearmath.front.hobbed import HobbedGear, HobbedThread
 from gearmath.front.machines import hobber_of, load_hobber
 from gearmath.front.progress import Begin, Progress, silent, unheard
-from gearmath.front.tables import html_table
 from gearmath.gearbox.hobbed.choice import MOST_CUTS, Choice
 from gearmath.gearbox.hobbed.choice import choose as search
 from gearmath.gearbox.hobbed.contributions import sources
@@ -26,6 +25,7 @@ from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch_of
@@ -49,8 +49,8 @@ __all__ = ("Job", "choose", "export_teensy", "hob", "load_hobber", "plan")
         "must be the plan of a gear or of a thread",
     ),
 )
-@dataclass(frozen=True)
-class Job:
+@dataclass(frozen=True, repr=False)
+class Job(Shown):
     """A job of the electronic gearbox; ``plan`` has exact ratio, rates against limits, what to set and measure."""
 
     machine: HobbingMachine
@@ -73,8 +73,9 @@ class Job:
     ) -> Simulation:
         """Run the compiled step rule over so many encoder edges, "forward", "dither" or "reversals"; errors in steps.
 
-        It begins at the count ``start``; a ``trace`` keeps the errors on the way, for :meth:`plot`. Raises
-        ComputationError where there is no C compiler.
+        Returns ``worst_error`` of the rule and ``float_worst_error`` of a floating-point one beside it [steps], and
+        where encoder and motor stand at the end. It begins at the count ``start``; a ``trace`` keeps the errors on the
+        way, for :meth:`plot`. Raises ComputationError where there is no C compiler.
         """
         from gearmath.export.host import run_axes
 
@@ -103,8 +104,8 @@ class Job:
         return HobbedThread(self.plan, tuple(traces))
 
     def to_dict(self) -> dict[str, Any]:
-        """The plan by name, exact numbers as fractions."""
-        return asdict(self.plan)
+        """As ``gearmath gearbox plan --json`` prints it; what is a fraction also exactly, as text."""
+        return plain_numbers(asdict(self.plan))
 
     @checked_call
     def plot(
@@ -134,9 +135,26 @@ class Job:
         axes.set_title(f"{plan.machine}: {steps}, {plan.rpm:.0f} rpm")
         return figure
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        plan = self.plan
+        what = f"thread of {float(plan.pitch):g} mm" if isinstance(plan, ThreadPlan) else f"gear of {plan.teeth} teeth"
+        figures: list[Shows] = [("steps per count", str(self.steps_per_count), ""), ("speed", plan.rpm, "rpm")]
+        figures += [("at most", plan.highest_rpm, "rpm")]
+        return f"{what} on the {plan.machine}", figures
+
     def _repr_html_(self) -> str:
-        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str | Fraction)}
-        return html_table(f"job on the {self.plan.machine}", ["figure", "value"], list(plain.items()))
+        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str)}
+        return html_table(
+            f"job on the {self.plan.machine}",
+            ["figure", "value"],
+            [[key.replace("_", " "), value] for key, value in plain.items()],
+        )
+
+
+def plain_numbers(values: dict[str, Any]) -> dict[str, Any]:
+    """For JSON: a fraction as number, and exactly beside it."""
+    exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
+    return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
 
 
 @checked_call(machine=HOBBER, feed=Either((_PER_TURN, Text()), _PER_TURN.words))
@@ -232,8 +250,10 @@ def choose(
 ) -> Choice:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
 
-    Normal ``module`` and face_width [mm]; helix [degrees] has a hand. Raises InputError where no class can be given,
-    ComputationError where the finest parts do not reach it.
+    Normal ``module`` and face_width [mm]; helix [degrees] has a hand. Returns ``parts`` with microsteps, lines, gashes
+    and feed [mm per turn of the table], the ``gear`` that they cut with its figures and classes, and ``rpm``, the
+    highest speed of the hob. Raises InputError where no class can be given, ComputationError where the finest parts do
+    not reach it.
     """
     known = hobber_of(machine)
     if helix is None:

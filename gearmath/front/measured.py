@@ -18,19 +18,16 @@ from gearmath.files import write_text
 from gearmath.front.member import Member
 from gearmath.front.progress import Progress, unheard
 from gearmath.front.sets import GearSet, set_of
-from gearmath.front.tables import html_table
 from gearmath.quality.evaluation.file_checks import check_belongs
-from gearmath.quality.evaluation.member import MemberEvaluation as Found
 from gearmath.quality.evaluation.member import evaluate_member
-from gearmath.quality.uncertainty.corrected import point_covariance
-from gearmath.quality.uncertainty.figures import figures_of
-from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
+from gearmath.shown import Shown, Shows
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearmath.front.corrected import Correction
+    from gearmath.front.evaluated import Evaluation
     from gearmath.front.judged import Uncertainty
     from gearmath.front.machines import Machine
     from gearmath.quality.correction.stock import Stock
@@ -38,13 +35,10 @@ if TYPE_CHECKING:
     from gearmath.quality.foreign.points import Frame
     from gearmath.specs.calibration import Calibration
 
-#: Enough for the spread of a maximum to 2 %.
-_FEW_DRAWS = 2000
-
 
 @checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"), source=ORIGIN)
-@dataclass(frozen=True)
-class Measurement:
+@dataclass(frozen=True, repr=False)
+class Measurement(Shown):
     """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md.
 
     ``source`` is where it was read, for sentences.
@@ -111,6 +105,8 @@ class Measurement:
         ``registered=False`` and ``rotated=False`` leave them in; ``progress`` hears of every stage, of ``STAGES``.
         Raises InputError where the points are not those of the member.
         """
+        from gearmath.front.evaluated import Evaluation
+
         with about(self.source):
             found = evaluate_member(self.file, self.member.spec, self.member.name, registered, progress, rotated)
         return Evaluation(self, found)
@@ -146,7 +142,9 @@ class Measurement:
     def share_stock(self, advance: bool = False, least: float = 0.0) -> Stock:
         """How the precut blank that was measured must stand so that both flanks share its stock [rad, mm].
 
-        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Raises InputError.
+        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Returns ``turn``
+        [rad], ``advance`` [mm], and by flank ``least``, ``mean`` and ``most`` of the stock then, and ``least_before``
+        [mm]. Raises InputError.
         """
         from gearmath.quality.correction.stock import share_stock
 
@@ -158,6 +156,7 @@ class Measurement:
         self,
         path: str | Path,
         *mate: Measurement | str | Path,
+        again: Sequence[Measurement | str | Path] = (),
         part_number: str | None = None,
         date: str | None = None,
         operator: str | None = None,
@@ -166,15 +165,16 @@ class Measurement:
     ) -> Path:
         """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
 
-        Its head has part number, date, operator, machine and probe, or those that the file states. Raises InputError
-        where the mate is of the same member.
+        ``again``: members measured again after the correction. Its head has part number, date, operator, machine and
+        probe, or those that the file states. Returns the path. Raises InputError where the mate is of the same member,
+        or ``again`` is of another.
         """
         from gearmath.front.judged import inspection
 
-        mates = [measurement_in(one, self.member.gear_set) for one in mate]
+        mates, seconds = ([measurement_in(one, self.member.gear_set) for one in each] for each in (mate, again))
         said = {"part_number": part_number, "date": date, "operator": operator, "machine": machine, "probe": probe}
         head = {key: text for key, text in said.items() if text is not None}
-        sheet = inspection((self, *mates), [head] * (1 + len(mates)))
+        sheet = inspection((self, *mates), [head] * (1 + len(mates)), seconds)
         write_text(Path(path), sheet.html)
         return Path(path)
 
@@ -184,9 +184,30 @@ class Measurement:
         write_flank_csv(Path(path), self.file)
         return Path(path)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Header and columns of the flank CSV; what it does not say is None."""
+        columns = {name: getattr(self.file, name) for name in ("flank", "tooth", "row", "col", "point", "normal")}
+        silent = {"deviation": self.file.deviation, "u": self.file.uncertainty}
+        return {
+            "member": self.member.name,
+            "header": dict(self.file.header),
+            **{name: values.tolist() for name, values in columns.items()},
+            **{name: [None if np.isnan(one) else float(one) for one in values] for name, values in silent.items()},
+        }
+
     def plot(self) -> Figure:
         """Topography of both flanks, pitch and runout as far as they were measured."""
         return self.evaluate().plot()
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        file, known = self.file, self.deviation[~np.isnan(self.deviation)]
+        figures: list[Shows] = [("points", len(file), "")]
+        if len(known):
+            largest, rms = float(known[abs(known).argmax()]), float(np.sqrt(np.mean(known**2)))
+            figures += [("largest deviation", 1000 * largest, "um"), ("RMS", 1000 * rms, "um")]
+        figures.append(("teeth", len(set(file.tooth.tolist()) - {self.member.teeth}), f"of {self.member.teeth}"))
+        where = "" if self.source is None else f", {self.source.name}"
+        return f"measured {self.member.name}{where}", figures
 
 
 def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measurement:
@@ -216,60 +237,6 @@ def load_measurement(path: str | Path, member: Member | GearSet | str | Path) ->
 def measurement_in(given: Measurement | str | Path, pair: GearSet) -> Measurement:
     """A measurement, or that of a file, of the member of a pair that the file names."""
     return given if isinstance(given, Measurement) else load_measurement(given, pair)
-
-
-@dataclass(frozen=True)
-class Evaluation:
-    """The figures of a measured member: ``found`` has all in mm, :meth:`to_dict` in µm, as the command's JSON."""
-
-    measurement: Measurement
-    found: Found
-
-    @property
-    def title(self) -> str:
-        """Member and file."""
-        name, source = self.measurement.member.name, self.measurement.source
-        return name if source is None else f"{name}, {source.name}"
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """What was left out or taken out, and what should be looked at."""
-        return self.found.remarks
-
-    def to_dict(self) -> dict[str, Any]:
-        """As ``gearmath evaluate --json`` prints it; lengths in µm where the name says so."""
-        return self.found.as_dict()
-
-    def plot(self) -> Figure:
-        """Topography of both flanks, pitch and runout as far as they were measured."""
-        from gearmath.plot import evaluation_figure
-
-        return evaluation_figure(self.title, self.found)
-
-    @checked_call
-    def uncertainties(self, sigma_um: float | None = None) -> list[Uncertain]:
-        """The figures with their standard uncertainties, from few draws: of ``sigma_um``, or else by u_um of the file.
-
-        None where neither says how well the points were measured; :meth:`Measurement.uncertainty` says more.
-        """
-        covariance = point_covariance(self.measurement.file, sigma_um)
-        if covariance is None:
-            return []
-        figures = figures_of(self.measurement.file, self.measurement.member.spec, self.found)
-        return uncertain_figures(figures, covariance, _FEW_DRAWS)
-
-    def _repr_html_(self) -> str:
-        flanks = self.to_dict()["flanks"]
-        names = [
-            name
-            for name in ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
-            if any(name in row for row in flanks.values())
-        ]
-        rows = [
-            [flank, *("withheld" if row.get(name) is None else row[name] for name in names)]
-            for flank, row in flanks.items()
-        ]
-        return html_table(f"{self.measurement.member.name}, as measured", ["flank", *names], rows)
 
 
 def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurement:

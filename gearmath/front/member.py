@@ -18,7 +18,7 @@ from gearmath.errors import about
 from gearmath.front.changed import changed, check_keys, shallow
 from gearmath.front.flanks import FlankSurface, Tooth
 from gearmath.front.progress import Begin, silent
-from gearmath.front.tables import html_table
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.margins import Margins
@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     name=OneOf(MEMBERS),
     spec=Record("gearmath.specs.bevel_set", "Member", "the part of a set file that is of a member"),
 )
-@dataclass(frozen=True)
-class Member:
+@dataclass(frozen=True, repr=False)
+class Member(Shown):
     """One member of a set: ``name`` is "pinion" or "gear", ``spec`` its part of the file, mm and degrees."""
 
     gear_set: GearSet
@@ -122,6 +122,7 @@ class Member:
         >>> gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave").point.shape
         (5, 9, 3)
         """
+
         size = None if grid is None else grid_of(grid)
         if places is None:
             at = blank_grid(self.spec, *(size or (5, 9)), margin)
@@ -211,6 +212,11 @@ class Member:
         from gearmath.front.probing import probing
 
         return probing(self, machine, name=name, **options)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        spec = self.spec
+        figures: list[Shows] = [("teeth", spec.teeth, ""), ("hand", spec.hand, ""), ("cutting", spec.cutting, "")]
+        return f"{self.name} of {self.gear_set.title}", figures
 
     def _repr_html_(self) -> str:
         rows = [[key, *(getattr(self.spec.flank(flank), key) for flank in FLANKS)] for key in SETTINGS]

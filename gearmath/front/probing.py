@@ -34,6 +34,7 @@ from gearmath.quality.calibration.tip import Tip
 from gearmath.quality.evaluation.calibrated_run import calibrated_run
 from gearmath.quality.evaluation.file_checks import check_belongs, check_points
 from gearmath.quality.evaluation.nominal import nominal_rows
+from gearmath.shown import Shown, Shows
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import planned_touches
@@ -42,8 +43,8 @@ if TYPE_CHECKING:
     from gearmath.machine.control.state import Probe
 
 
-@dataclass(frozen=True)
-class ProbingProgram:
+@dataclass(frozen=True, repr=False)
+class ProbingProgram(Shown):
     """A program that probes ``member``, or without one ring and spheres.
 
     What :meth:`Member.probing` and :meth:`Machine.calibrating` write was run before it is returned; ``clearance`` says
@@ -153,6 +154,19 @@ class ProbingProgram:
     @cached_property
     def _count(self) -> int:
         return touch_count(self.read, self.name, self._setup)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        what = (
+            f"probing the {self.member.name} of {self.member.teeth} teeth"
+            if self.member
+            else f"finding the {self.cycle}"
+        )
+        figures: list[Shows] = [
+            ("touches", self.touches, ""),
+            ("blocks", self.blocks, ""),
+            ("machine", self.machine.spec.name, ""),
+        ]
+        return f"{self.name}, {what}", figures
 
 
 @checked_call(pitch=Truth())

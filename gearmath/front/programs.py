@@ -31,20 +31,21 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
 from gearmath.machine.planning.targets import teeth_around
+from gearmath.shown import Shown, Shows
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 if TYPE_CHECKING:
+    from gearmath.front.timing import ProgramTime
     from gearmath.machine.control.executor import MachinePath
     from gearmath.machine.judging.cut import MetalLeft
     from gearmath.machine.judging.report import MillingReport
-    from gearmath.machine.judging.trajectory import Trajectory
 
 #: Columns of the tooth space that programs are judged with.
 _COLUMNS = 7
 
 
-@dataclass(frozen=True)
-class Judgement:
+@dataclass(frozen=True, repr=False)
+class Judgement(Shown):
     """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none.
 
     ``remarks`` are sentences about what only takes time.
@@ -54,13 +55,18 @@ class Judgement:
     faults: tuple[str, ...]
     remarks: tuple[str, ...] = ()
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [("faults", len(self.faults), ""), ("remarks", len(self.remarks), "")]
+        figures += [("fault", text, "") for text in self.faults] + [("remark", text, "") for text in self.remarks]
+        return "the machine must not run it" if self.faults else "the machine may run it", figures
+
 
 @checked_call(
     machine=Record("gearmath.front.machines", "Machine", "a machine"),
     made=Record("gearmath.machine.judging.checked", "CheckedCut", "the plan of a program"),
 )
-@dataclass(frozen=True)
-class Program:
+@dataclass(frozen=True, repr=False)
+class Program(Shown):
     """The text of a program for a member on a machine, and its name on the control or in its file.
 
     ``made`` is the plan that it was written from, where it was written here.
@@ -130,7 +136,9 @@ class Program:
     def judge(self, milled: Measurement | str | Path | None = None, begin: Begin = silent) -> Judgement:
         """What the machine must not run: travel, speed, collisions, modes, metal that is left or gouged.
 
-        On a machine without errors. ``milled`` is what :meth:`mill` has found of such a machine, to be asked once.
+        Returns ``faults`` and ``remarks``, a sentence each, and ``left``, what is left of the metal: ``left.tolerance``
+        [mm] is how far flanks may deviate. On a machine without errors. ``milled`` is what :meth:`mill` has found of
+        such a machine, to be asked once.
         """
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         if isinstance(milled, str | Path):
@@ -159,7 +167,9 @@ class Program:
     ) -> MillingReport:
         """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface.
 
-        Flanks may have a ``flank_tolerance`` [mm] of their own.
+        Flanks may have a ``flank_tolerance`` [mm] of their own. Returns ``surfaces`` with the ``lowest`` and
+        ``highest`` place of each [mm], those of them that are ``gouges`` or ``uncut``, ``collisions``, and in
+        ``timing`` seconds and the speed of each axis.
         """
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
@@ -179,11 +189,11 @@ class Program:
             flank_tolerance=flank_tolerance,
         )
 
-    def time(self) -> Trajectory:
+    def time(self) -> ProgramTime:
         """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""
         from gearmath.front.timing import timed
 
-        return timed(self.read, self.name, self.machine, path=self.path).trajectory
+        return timed(self.read, self.name, self.machine, path=self.path)
 
     @cached_property
     def read(self) -> str:
@@ -206,6 +216,14 @@ class Program:
         """The tools of the program on a machine without errors, with blades as sharp as there are."""
         member, machine = self.member, self.machine.spec
         return runs_of(self.path, member.spec, member.name, machine, None, self.space, SHARP_EDGE)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("blocks", self.blocks, ""),
+            ("text", len(self.text) // 1000, "kB"),
+            ("machine", self.machine.spec.name, ""),
+        ]
+        return f"{self.name}, cutting the {self.member.name} of {self.member.teeth} teeth", figures
 
 
 def cutting(

@@ -16,7 +16,7 @@ from gearmath.errors import about
 from gearmath.files import write_text
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
-from gearmath.front.tables import html_table
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.toml import find
@@ -32,8 +32,8 @@ _SPEC = Record("gearmath.specs.bevel_set", "BevelSet", "the checked content of a
 
 
 @checked_call(spec=_SPEC, source=ORIGIN, remarks=Each(Content(), "must be a list of sentences"))
-@dataclass(frozen=True)
-class GearSet:
+@dataclass(frozen=True, repr=False)
+class GearSet(Shown):
     """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file.
 
     ``source`` is the file that it was read from, ``remarks`` what was left aside there.
@@ -192,6 +192,12 @@ class GearSet:
 
         write_text(Path(path), summary_sheet(self.spec))
         return Path(path)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        spec = self.spec
+        teeth = " x ".join(str(spec.member(name).teeth) for name in spec.members)
+        kinds = ", ".join(dict.fromkeys(spec.member(name).process.replace("_", " ") for name in spec.members))
+        return self.title, [("teeth", teeth, ""), ("shaft angle", spec.shaft_angle, "degrees"), ("made by", kinds, "")]
 
     def _repr_html_(self) -> str:
         flanks = [(name, flank) for name in self.spec.members for flank in FLANKS]

@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, AliasChoices, Field, model_validator
 
 from derivations import notation
+from gearmath.shown import Shown, Shows
 from gearmath.specs.board import BOARDS, Board, BoardName, Display, Pins
 from gearmath.specs.counters import (
     DEFAULT_PINS,
@@ -79,7 +80,7 @@ class Limits(Spec):
         return data
 
 
-class HobbingMachine(Spec):
+class HobbingMachine(Shown, Spec):
     """A hobbing machine, or a lathe, with an electronic gearbox. Names as in the generated ``gm_machine.h``."""
 
     name: Annotated[str, AfterValidator(_plain)] = Field(min_length=1, max_length=60)
@@ -334,6 +335,14 @@ class HobbingMachine(Spec):
         """Motor steps per second of a jog or an index move."""
         limits = self.limits
         return int(min(2000.0, limits.step_rate_hz) if limits.move_rate_hz is None else limits.move_rate_hz)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("kind", self.profile, ""),
+            ("board", self.board, ""),
+            ("encoder lines", self.encoder.lines, ""),
+        ]
+        return self.name, [*figures, ("hobs", tuple(hob.name for hob in self.hobs), "")]
 
 
 def load_hobbing_machine(path: Path) -> HobbingMachine:

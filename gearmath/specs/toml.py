@@ -25,7 +25,8 @@ _SHOWN = 80
 class Spec(BaseModel):
     """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    # built on first use: a file is of one model, its module has a dozen
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
 
     def rad(self, key: str) -> Any:
         """The angle of a key, or the angles (n,) of a list [rad]; files have degrees."""

@@ -233,6 +233,16 @@ def test_links_of_the_documents_lead_somewhere() -> None:
         assert [target for target in local if not (ROOT / target).exists()] == [], document
 
 
+def test_readme_asks_what_the_notebooks_ask() -> None:
+    rows = re.findall(
+        r"^\| (.+\?) \| \[\w+\]\(notebooks/(\w+\.ipynb)\) \|$", (ROOT / "README.md").read_text("utf-8"), re.M
+    )
+    first = {path.name: json.loads(path.read_text("utf-8"))["cells"][0]["source"] for path in NOTEBOOKS}
+    assert {name: f"# {question}" for question, name in rows} == {
+        name: "".join(source).splitlines()[0] for name, source in first.items()
+    }
+
+
 def test_readme_shows_every_verb() -> None:
     text = (ROOT / "README.md").read_text("utf-8")
     assert [verb for verb in VERBS if f"`gearmath {verb}" not in text] == []

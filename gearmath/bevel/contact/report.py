@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.surface import BORDERS, edges_of, nominal_surface
 from gearmath.bevel.contact.system import Assembly, System, pair_system
 from gearmath.bevel.contact.tolerance import EDGES, Tolerance
+from gearmath.shown import Shows
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
 
 #: The flank of the pinion that works on each side; the gear's is the other one.
@@ -86,6 +87,16 @@ def on_fillets(run: Mesh) -> list[str]:
             if edge // len(BORDERS) != root // len(BORDERS)
         }
     )
+
+
+def shown_runs(runs: Mapping[str, Mesh]) -> list[Shows]:
+    """What matters most of the sides of a pair, where its record is shown."""
+    shown: list[Shows] = []
+    for side, run in runs.items():
+        spread = run.leads.peak_to_peak
+        shown.append((f"{side}: transmission error", None if spread is None else spread * ARCSEC, "arcsec"))
+    shown += [(f"{side}: contact ratio", run.contact_ratio, "") for side, run in runs.items()]
+    return [*shown, *((f"{side}: outcome", run.outcome, "") for side, run in runs.items())]
 
 
 def _degrees(rotation: float) -> float:
