@@ -33,7 +33,9 @@ _JOB = (
     click.option("--shift", type=float, help="Profile shift in modules."),
     click.option("--pin", type=float, help="Diameter of the measuring pins in mm; 1.68 modules if left out."),
     click.option("--run-up", type=float, help="Seconds of the hob or spindle from rest to its speed, or to rest."),
-    click.option("--rpm", type=float, help="Speed of hob or spindle; the highest within the limits if left out."),
+    click.option(
+        "--rpm", type=float, help="Speed of hob or spindle; 90 % of the highest within the limits if left out."
+    ),
 )
 
 

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from gearmath.errors import counted
 from gearmath.gearbox.job import PROPOSED, GearboxJob, ThreadPlan
+from gearmath.gearbox.motion import HOPELESS_TURNS
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
 from gearmath.specs.hobbing import HobbingMachine
@@ -70,7 +71,11 @@ def _motion(job: GearboxJob, what: str) -> Iterator[str]:
             f"{motion.catch_up_turns:.1f} turns of the {what}"
         )
     else:
-        yield f"  engage only up to {motion.engage_rpm:.0f} rpm: above, the steps leave no room to catch up"
+        yield (
+            f"  engage only up to {motion.engage_rpm:.0f} rpm: above, catching up takes more than "
+            f"{HOPELESS_TURNS:.0f} turns of the {what}, where the firmware gives up; a higher "
+            "limits.acceleration_hz_per_s helps"
+        )
 
 
 def _resolution(count_um: float, step_um: float, where: str) -> str:
@@ -135,6 +140,9 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
             f"{blank.blank_diameter / 2:.4f} mm radius; more teeth are needed, or a profile shift (--shift)"
         )
         return
+    core = blank.blank_diameter - 2 * blank.cut_depth
+    if core < blank.cut_depth:
+        yield f"    core           {_length(core)}  in diameter is all that the cut leaves"
     if blank.undercut is not None:
         yield (
             f"    undercut       below {blank.undercut.least_teeth:.1f} teeth; a profile shift of "
@@ -150,13 +158,13 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
         needs = f", face width over {blank.span.face_width:.2f} mm" if blank.span.face_width else ""
         yield f"    span           {_length(blank.span.length)}  over {counted(blank.span.teeth, 'tooth')}{needs}"
     else:
-        yield "    span           none: the jaws would not touch the flanks on both sides of two teeth or more"
+        yield "    span           none: the jaws would not touch the involute on both sides of two teeth or more"
     if blank.chord is not None:
         yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
     if blank.over_pins is not None:
         yield f"    over pins      {_length(blank.over_pins.length)}  of {blank.over_pins.pin:.4g} mm"
     else:
-        yield "    over pins      none: such pins do not rest on the flanks and stand out above the tips; try --pin"
+        yield "    over pins      none: such pins do not rest on the involute and stand out above the tips; try --pin"
     yield "    " + _resolution(blank.count_um, blank.step_um, "at the pitch circle")
 
 

@@ -7,10 +7,10 @@ from collections.abc import Iterator
 
 from gearmath.export.full_rate import full_rate_of_a_gear, full_rate_of_a_thread
 from gearmath.export.markdown import bullets
-from gearmath.export.reservations import SMALL, fewest_teeth
+from gearmath.export.reservations import SMALL, fewest_teeth, trial_teeth
 from gearmath.gearbox.job import TRIP
 from gearmath.specs.hobbing import HobbingMachine
-from gearmath.specs.motion_limits import TRIAL_TEETH
+from gearmath.specs.motion_limits import most_acceleration
 
 
 def commissioning(machine: HobbingMachine) -> Iterator[str]:
@@ -38,16 +38,18 @@ def _standing(machine: HobbingMachine) -> Iterator[str]:
             "contact and wire are not normally closed to ground; if it stays, the wire is broken."
         )
     if pins.healthy is not None:
-        lets_go = "In that state" if pins.estop is not None else f"With the wire at pin {pins.healthy} pulled off"
         yield (
-            f"{lets_go} K1 must have let go (a multimeter shows no connection from COM to NO), and the {leading} must "
-            "not start when S4 is pressed."
+            "K1, with a multimeter at its COM and NO: joined while the menu is shown. Pull the wire at pin "
+            f"{pins.healthy} off: not joined any more. Leave it off, release every stop, and switch the power of the "
+            f"spindle on, nothing clamped, hands off: S4 must not start the {leading}. Put the wire back, hold the "
+            "button for a second where a fault is shown: S4 must start it now. Pull the wire off while it runs "
+            "empty: it must stop. Then S3, and the power of the spindle off again."
         )
     if pins.alarm is not None:
         how = "pull the wire at" if machine.driver.alarm_active == "high" else "join to GND"
         yield (
-            f"The alarm of the driver: {how} pin {pins.alarm}, and `FAULT motor driver` must come; with the driver "
-            "wired and on it must go after a hold of the button. If it stays, write the other level as `alarm_active`."
+            f"The input for the alarm of the driver: {how} pin {pins.alarm}, and `FAULT motor driver` must come. Put "
+            "it back as it was. (A driver without power may report an alarm, too: the driver itself is tried below.)"
         )
     lines = "the MODE jumper or the number of lines" if machine.encoder.has_ls7184 else "the number of lines"
     yield (
@@ -72,9 +74,26 @@ def _output_pulse(machine: HobbingMachine) -> str:
         f"off, and no job: at {machine.limits.hob_rpm:g} rpm, {rate} edges/s, the mean is {high:.2f} V for pulses of "
         f"1 us and {low:.2f} V for 2 us; turn the trimmer down until it lies between. At half the speed it must have "
         "fallen half as far from 5.00 V: if it has fallen further, edges are lost at the full speed, and the pulse "
-        "is still too long. Everything off, measure trimmer and resistor together, and solder the nearest fixed "
-        f"resistor in.{other}"
+        "is still too long. Everything off and U3 out of its socket, measure trimmer and resistor together, and "
+        f"solder the nearest fixed resistor in.{other}"
     ).replace("the hob by hand", f"the {_leading(machine)} by hand")
+
+
+def _alarm_of_the_driver(machine: HobbingMachine, free: str) -> str:
+    if machine.driver.alarm_active == "high":
+        tried = (
+            "Then pull the cable of the alarm off at the driver: the fault must come. Motor power off, the cable back."
+        )
+    else:
+        tried = (
+            "Make the driver report an alarm once, as its manual says (most do so where the motor is unplugged, "
+            "without power, and power comes on then): the fault must come. Motor power off, the motor back."
+        )
+    return (
+        f"Motor power on, {free}. Where `FAULT motor driver` is shown, hold the button for a second: it must go. If "
+        "it stays although the lamp of the driver shows no alarm, write the other level as `alarm_active`, export "
+        f"and flash again. {tried}"
+    )
 
 
 def _moving(machine: HobbingMachine) -> Iterator[str]:
@@ -82,23 +101,25 @@ def _moving(machine: HobbingMachine) -> Iterator[str]:
     lathe, leading, limits = machine.profile == "lathe", _leading(machine), machine.limits
     driven, free = ("lead screw", "half nut open") if lathe else ("table", "nothing clamped, the hob clear of it")
     seconds = float(machine.motor_steps) / machine.move_max_rate + machine.move_max_rate / limits.acceleration_hz_per_s
-    stop = "the emergency stop" if machine.pins.estop is not None else "the switch of G2, there is no emergency stop"
+    if machine.pins.alarm is not None:
+        yield _alarm_of_the_driver(machine, free)
     yield (
-        f"Motor power on, {free}. Have a hand on {stop}. `test one turn`: draw a line across "
+        f"Motor power on, {free}. Have a hand on the switch of G2: neither emergency stop nor board takes the power of "
+        f"the motor away. `test one turn`: draw a line across "
         f"{driven} and frame, answer yes; in about {seconds:.0f} s {round(machine.motor_steps)} "
         f"steps must bring the line back exactly. If not, full steps, "
         f"microsteps{' or belt' if lathe else ', belt or worm'} of the machine file are not those of the machine: "
         "where it makes half a turn the driver makes twice the microsteps that the file says, where two turns, half."
     )
     # from rest to twice the acceleration the motor swings to 3.5 times it; from braking to full acceleration to 2.5
-    twice = min(2.0 * limits.acceleration_hz_per_s, 1e7)
+    twice = min(2.0 * limits.acceleration_hz_per_s, most_acceleration(machine))
     reached = int(min(machine.max_step_rate, math.sqrt(twice * float(machine.motor_steps))))
     yield (
-        f"What the motor carries: with `acceleration_hz_per_s = {twice:g}` and `move_rate_hz = {reached}` in a copy of "
-        "the machine file, exported and flashed, repeat `test one turn` ten times; the line must come back each time. "
-        "Then flash this folder again. A motor that passes has the reserve that it needs where the "
-        f"{leading} stops at once while it is being caught up. If it loses steps, halve `acceleration_hz_per_s` of the "
-        "machine file, export again, and repeat."
+        f"What the motor carries: with `acceleration_hz_per_s = {twice:g}` and `move_rate_hz = {reached}` in a copy "
+        "of the machine file, exported to another folder and flashed (9 V off, U1 out of its socket each time), "
+        "repeat `test one turn` ten times; the line must come back each time. Then flash this folder again. A motor "
+        f"that passes has the reserve that it needs where the {leading} stops at once while it is being caught up. "
+        "If it loses steps, halve `acceleration_hz_per_s` of the machine file, export again, and repeat."
     )
 
 
@@ -110,17 +131,18 @@ def _together(machine: HobbingMachine) -> Iterator[str]:
     if machine.pins.index is not None:
         turning = leading if machine.encoder.belt == 1 else "encoder, which are not those of the " + leading
         yield (
-            f"Index: in the same job let the {leading} run for a minute at about 100 rpm. `Checked` on the third "
-            f"page (two detents) must count every turn of the {turning}. If it stays at 0, Z of the encoder does not "
-            f"reach pin {machine.pins.index}, or its pulse is the other way round: write the other `index_active`; "
-            "if `FAULT hob encoder` comes, edges are lost: look at cable, shield, coupling."
+            f"Index: in the same job let the {leading} run for a minute at about "
+            f"{min(100.0, machine.limits.hob_rpm / 2):g} rpm. `Checked` on the third page (two detents) must count "
+            f"every turn of the {turning}. If it stays at 0, Z of the encoder does not reach pin "
+            f"{machine.pins.index}, or its pulse is the other way round: write the other `index_active`; if `FAULT "
+            "hob encoder` comes, edges are lost: look at cable, shield, coupling."
         )
     if machine.feed is not None:
         yield _direction_of_the_feed(machine)
     trial = (
         "a thread in scrap, and measure it over ten pitches"
         if lathe
-        else f"a gear of {TRIAL_TEETH} teeth in wax, and count them"
+        else f"a gear of {trial_teeth(machine)} teeth in wax, and count them"
     )
     yield f"Cut air: a whole pass with the tool 5 mm clear of the blank. Then cut {trial}."
 
@@ -136,10 +158,11 @@ def _direction_of_a_thread() -> str:
 
 def _direction_of_a_gear(machine: HobbingMachine) -> str:
     hand = machine.hob_hand
-    turns = TRIAL_TEETH // 4
+    teeth = trial_teeth(machine)
+    turns = teeth // 4
     return (
-        f"Direction: job of {TRIAL_TEETH} teeth with a {hand}-hand hob, no helix, `Start?` yes. Turn the hob by hand "
-        f"{turns} turns in its working direction: the table must go {turns * 360 * machine.hob_starts / TRIAL_TEETH:g} "
+        f"Direction: job of {teeth} teeth with a {hand}-hand hob, no helix, `Start?` yes. Turn the hob by hand "
+        f"{turns} turns in its working direction: the table must go {turns * 360 * machine.hob_starts / teeth:g} "
         f"degrees. Which way: hold the {hand} hand beside the hob, its bent fingers the way the hob turns; its thumb "
         "lies along the axis of the hob. The side of the table next to the hob must go the other way than the thumb "
         "points. If it goes with the thumb, change `invert_direction` of the driver and export again."
@@ -196,8 +219,8 @@ def _leading(machine: HobbingMachine) -> str:
 _GEAR = (
     "Take brass or a hard plastic, 30 to 60 teeth, and a blank of the diameter that the page `Blank` shows, on an "
     "arbor that runs true: what the blank runs out, its teeth run out too.",
-    "A hob of 25 mm turns at 600 to 800 rpm in aluminum, at 300 to 350 rpm in steel; one of 50 mm at half of that, "
-    "and so on. Cutting oil for steel and aluminum, brass dry.",
+    "Within its limit a hob of 25 mm turns at 600 to 800 rpm in aluminum, at 300 to 350 rpm in steel; one of 50 mm "
+    "at half of that, and so on. Cutting oil for steel and aluminum, brass dry.",
     "Swivel the hob head by the lead angle of the hob (stamped on it), for helical teeth by helix less lead angle "
     "where both have one hand, by their sum where not. Which way: so that the thread of the hob, on the side of the "
     "blank, lies along the teeth to be cut; for a spur gear that is along the axis of the blank.",

@@ -35,6 +35,20 @@ _BOTH: tuple[_Words, ...] = (
         "it counts so much of what is wanted: jumper or lines",
     ),
     ("WRONG: wiring, lines", "the encoder test: none of these"),
+    ("Phase is set here", "`Only set the phase` is done: as both stand now they are in mesh"),
+    (
+        "Refused by the core",
+        "the motor part of the program does not take this job or move: an alarm, a fault, a motion",
+    ),
+    ("Not now: table moves", "wait until the motor stands"),
+    ("Too far: jog | Too far: new job", "a move beyond what is counted: jog nearer, or begin a new job"),
+    ("PHASE LOST: set up", "a fault has ended the job: set the work up anew"),
+    ("Phase kept. Hold: on", "a fault that keeps the job: hold the button to go on"),
+    ("Follows till it ends", "after a stop: the motor follows until the other side stands"),
+    ("No index pulse", "no index is wired: lost edges are not noticed"),
+    ("FAULT | Unknown", "cannot come: tell us"),
+    ("The cause is there", "a fault cannot be acknowledged while its cause is there"),
+    ("Move stopped", "a press has stopped the move"),
     ("Mark off? Check belt", "the one-turn test: whether the mark has come back, by eye"),
 )
 _OF_HOBBING: tuple[_Words, ...] = (
@@ -42,10 +56,16 @@ _OF_HOBBING: tuple[_Words, ...] = (
     ("helix: 0 to 60 deg", "why a job is refused: its helix angle"),
     ("feed not possible", "why a job is refused: a helix needs a feed that the ratio can hold"),
     ("hob is not known", "a stored job is of a hob that the machine file no longer has"),
+    ("Not now: hob turns?", "a move is refused while the hob turns"),
     ("HOB TURNS: KEEP FREE", "the hob turns already: nothing may touch the blank until it is in phase"),
     ("No pass before", "there is no pass to compare with yet (fourth page)"),
 )
-_OF_A_LATHE: tuple[_Words, ...] = (("pitch not possible", "why a job is refused: its pitch"),)
+_OF_A_LATHE: tuple[_Words, ...] = (
+    ("pitch not possible", "why a job is refused: its pitch"),
+    ("Stop spindle first", "the next start of the thread is taken with the spindle at rest"),
+    ("Next start is ready", "the carriage is placed for the next start of the thread"),
+    ("Spindle moved: lost", "the spindle turned while the carriage moved by itself: set the phase anew"),
+)
 _OF_ANY: tuple[_Words, ...] = (
     ("starts: 1 to 10", "why a job is refused: starts of hob or thread"),
     ("other kind of job", "a stored job is of the other kind of machine"),

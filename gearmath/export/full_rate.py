@@ -43,7 +43,7 @@ def _only_fast(machine: HobbingMachine, rpm: float) -> str:
         per_count = _of_a_gear(machine, teeth)
         if motion(machine, per_count, fastest).catch_up_s is not None:
             rate = _overtaking(machine, per_count, fastest)[0]
-            return f" (A hob of {fastest:g} rpm alone: {teeth} teeth, {rate:.0f} steps/s.)"
+            return f" (A hob of {fastest:g} rpm alone: {teeth} teeth, which reach {rate:.0f} steps/s.)"
     return ""
 
 
@@ -98,7 +98,11 @@ def _slip(machine: HobbingMachine, driven: str) -> str:
     if machine.drive.pulses is not None or machine.driver.timing.closed_loop:
         return f"If it is not, or the drive reports an alarm, {lower}"
     degrees = _SLIP * 360 * (machine.drive.microsteps or 1) / float(machine.motor_steps)
+    if machine.profile == "lathe":
+        way = f"{float(machine.lead_screw_pitch) * degrees / 360:.2g} mm of the carriage"
+    else:
+        way = f"{2 * math.pi * 50 * degrees / 360:.2g} mm at a radius of 50 mm"
     return (
-        f"A step motor slips by {_SLIP} full steps at the least, {degrees:.2g} degrees of the {driven}, "
-        f"{2 * math.pi * 50 * degrees / 360:.2g} mm at a radius of 50 mm. If it has slipped or stalled, {lower}"
+        f"A step motor slips by {_SLIP} full steps at the least, {degrees:.2g} degrees of the {driven}, {way}. If it "
+        f"has slipped or stalled, {lower}"
     )

@@ -8,6 +8,7 @@ from fractions import Fraction
 from gearmath.gearbox.job import TRIP
 from gearmath.gearbox.motion import motion
 from gearmath.specs.hobbing import HobbingMachine
+from gearmath.specs.motion_limits import TRIAL_TEETH
 
 #: A pinion that is cut on such machines.
 SMALL = 6
@@ -26,6 +27,14 @@ def reservations(machine: HobbingMachine) -> tuple[str, ...]:
         found.append("No index pulse (`pins.index`): lost encoder edges are not noticed.")
     if machine.profile != "lathe":
         found += _jobs(machine)
+    turn = round(machine.motor_steps)
+    most = turn // 2 if machine.profile == "lathe" else turn // (2 * TRIAL_TEETH)
+    if machine.limits.lag_steps > most:
+        half = "half a turn of the lead screw" if machine.profile == "lathe" else f"half a tooth of {TRIAL_TEETH}"
+        found.append(
+            f"`lag_steps = {machine.limits.lag_steps}`: the motor may be that far behind before it is a fault; "
+            f"{half} is {most} steps."
+        )
     return tuple(found)
 
 
@@ -33,6 +42,11 @@ def fewest_teeth(machine: HobbingMachine) -> int:
     """The fewest teeth that the firmware takes: they keep the rate up to the speed at which it trips."""
     at_one = Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts * TRIP
     return max(1, math.ceil(at_one / machine.max_step_rate))
+
+
+def trial_teeth(machine: HobbingMachine) -> int:
+    """Teeth of the first gear, a multiple of four that the firmware takes."""
+    return max(TRIAL_TEETH, 4 * math.ceil(fewest_teeth(machine) / 4))
 
 
 def _jobs(machine: HobbingMachine) -> list[str]:

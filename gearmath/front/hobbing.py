@@ -21,6 +21,7 @@ from gearmath.gearbox.hobbed.contributions import sources
 from gearmath.gearbox.hobbed.drive import Rule
 from gearmath.gearbox.hobbed.setup import blame, cut_and_inspect, setup
 from gearmath.gearbox.hobbed.thread import cut_thread
+from gearmath.gearbox.hobbed.undercut import measurable
 from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
@@ -196,7 +197,8 @@ def plan(
     if helix is None:
         _refuse_in_vain("without helix", hand=hand, cut=cut, feed=feed)
     lead = _helix(helix, hand, cut or "climb", feed)
-    return Job(known, plan_gear(known, teeth, starts, hob, rpm, lead, shift, pin, run_up))
+    made = plan_gear(known, teeth, starts, hob, rpm, lead, shift, pin, run_up)
+    return Job(known, measurable(made, known, 0.0 if lead is None else lead.beta))
 
 
 @checked_call(machine=HOBBER, feed=_PER_TURN)

@@ -36,6 +36,11 @@ def _plain(machine: HobbingMachine) -> bool:
     return machine.drive.pulses is None and not machine.driver.timing.closed_loop
 
 
+def most_acceleration(machine: HobbingMachine) -> int:
+    """The most that limits.acceleration_hz_per_s may be."""
+    return math.floor(QUICKEST * float(machine.drive.pulses_per_turn) / (2.0 * math.pi))
+
+
 def easy_rate(machine: HobbingMachine) -> int:
     """The step rate at which an ordinary step motor has torque."""
     return int(EASY_MOTOR * machine.drive.pulses_per_turn / 60)
@@ -89,7 +94,7 @@ def _check_ramps(machine: HobbingMachine) -> None:
     if acceleration * turn > QUICKEST:
         raise ValueError(
             f"limits.acceleration_hz_per_s = {acceleration:g}: is {acceleration * turn:.0f} rad/s2 of the motor, and "
-            f"no rotor, even bare, does more than {QUICKEST:.0f}; write at most {math.floor(QUICKEST / turn)}"
+            f"no rotor, even bare, does more than {QUICKEST:.0f}; write at most {most_acceleration(machine)}"
         )
     for what, rate, most in (
         ("a move", float(machine.move_max_rate), LONGEST_RAMP),

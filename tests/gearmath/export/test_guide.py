@@ -152,7 +152,7 @@ def test_what_stops_the_machine_is_tried_before_anything_has_power(name: str) ->
     steps = chapter(guide(given, "gearbox"), "Commissioning")
     powered = steps.index("Motor power on")
     assert ("`EMERGENCY STOP`" in steps[:powered]) == (given.pins.estop is not None)
-    assert ("K1 must have let go" in steps[:powered]) == (given.pins.healthy is not None)
+    assert ("S4 must not start" in steps[:powered]) == (given.pins.healthy is not None)
     assert "K1" not in steps[powered:]
 
 
@@ -261,6 +261,33 @@ def test_fewest_teeth_are_those_that_the_firmware_takes() -> None:
     assert said in " ".join(guide(slow, "gearbox").split())
 
 
+def test_first_gear_and_speeds_of_the_tests_are_those_that_the_machine_carries() -> None:
+    """20000/1.01 steps/s carry 11 teeth at 800 rpm; 6000 carry 36, which is 9 times four; a slow hob turns slower."""
+    given = machine("hobbing_default")
+    slow = given.model_copy(
+        update={"limits": given.limits.model_copy(update={"step_rate_hz": 6000.0, "hob_rpm": 800.0})}
+    )
+    text = chapter(guide(slow, "gearbox"), "Commissioning")
+    assert "Direction: job of 36 teeth" in text
+    assert "Turn the hob by hand 9 turns in its working direction: the table must go 90 degrees" in text
+    assert "a gear of 36 teeth in wax" in text
+    crawling = given.model_copy(update={"limits": given.limits.model_copy(update={"hob_rpm": 60.0})})
+    assert "for a minute at about 30 rpm" in chapter(guide(crawling, "gearbox"), "Commissioning")
+
+
+@pytest.mark.parametrize("level", ["low", "high"])
+def test_alarm_of_the_driver_is_tried_with_power_before_its_level_is_doubted(level: str) -> None:
+    given = machine("hobbing_default")
+    wired = given.model_copy(
+        update={
+            "pins": given.pins.model_copy(update={"alarm": 10}),
+            "driver": given.driver.model_copy(update={"name": "cl57t", "alarm_active": level}),
+        }
+    )
+    text = chapter(guide(wired, "gearbox"), "Commissioning")
+    assert text.index("Motor power on") < text.index("`alarm_active`")
+
+
 def test_full_rate_of_a_lathe_turns_screw_and_spindle_alike() -> None:
     """4800 steps a turn of screw and spindle: at 783 rpm 62640 steps/s, which overtake with all of the 80000."""
     text = chapter(guide(machine("lathe_example"), "gearbox"), "Commissioning")
@@ -295,7 +322,11 @@ def test_run_up_that_the_table_cannot_follow_is_said_with_the_teeth_that_it_can(
 def test_every_text_of_the_display_is_explained_or_explains_itself() -> None:
     """What the pages draw as it stands, and the words of a refusal."""
     texts = "".join(guide(machine(name), "gearbox") for name in MACHINES)
-    drawn = set(re.findall(r'gm_line\([^;"]*"([^";]{3,})"', screen())) | set(re.findall(r'return "([^"]+)"', screen()))
+    drawn = (
+        set(re.findall(r'->message = "([^"]+)"', screen()))
+        | set(re.findall(r'gm_line\([^;"]*"([^";]{3,})"', screen()))
+        | set(re.findall(r'return "([^"]+)"', screen()))
+    )
     plain = re.compile(r"(Press|Hold|Turn|Thread|Hob|Mark|Clear|before|gear before|per turn|must be|by hand|Test)\b")
     known = {"ok", "unknown", "Unknown", "FAULT"}
     missing = {said for said in drawn if said.strip("><") not in texts and not plain.match(said)} - known
