@@ -25,6 +25,10 @@ of the blade, inside which b > 0; the edge that a border makes has the direction
 An edge touches the mate where b = 0 and e·n' = 0 take the place of the normals in (25.3). A corner, or two edges that
 cross, touch where two borders have b = 0                                                         (25.5)
 
+Below the border u = const. at which the main section of the blade ends, its rounded edge cuts the fillet (10.3). Both
+touch there, so point and normal are the same: an edge that runs over this border goes on without a step. The mate's
+flank does not fit into the narrower fillet; its edges do.
+
 As φ_1 grows, points in contact move with equal speed along the common normal. With ρ_2 the lever of the gear:
 
     ρ_2 = n_2·(z × (r - o)),   dφ_2/dφ_1 = n_2·(k × r)/ρ_2,    z = M k,  o = (a + V) j           (25.6)

@@ -12,6 +12,7 @@ import mpmath
 import sympy as sp
 from sympy.printing.latex import LatexPrinter
 
+from derivations.errors import InputError
 from derivations.quantity import IDENTIFIER, Quantity
 
 
@@ -31,6 +32,11 @@ class _SharedLatex(LatexPrinter):
         return self._printed[key]
 
 
+def _listed(value: Any) -> tuple | list:
+    """A list or tuple as it is; what is none, as one that is not what it should be."""
+    return value if isinstance(value, tuple | list) else (None,)
+
+
 @dataclass(frozen=True)
 class Expression:
     """Named inputs to named outputs: what a chapter returns and :mod:`gearmath.lowering` takes.
@@ -38,7 +44,7 @@ class Expression:
     ``outputs`` pairs each output quantity with its SymPy expression. ``requires`` lists expressions of the inputs
     that must be positive besides the domains (a distance from a singular pose, a discriminant).
 
-    Raises ValueError if an output uses a symbol that is no input, or if shapes disagree.
+    Raises InputError if an output uses a symbol that is no input, or if shapes disagree.
     """
 
     name: str
@@ -49,23 +55,35 @@ class Expression:
     source: str = ""
 
     def __post_init__(self) -> None:
-        if not IDENTIFIER.match(self.name):
-            raise ValueError(f"expression name {self.name!r} is no C identifier")
+        if not isinstance(self.name, str) or not IDENTIFIER.match(self.name):
+            raise InputError(f"expression name {self.name!r} is no C identifier")
+        for key, fits, words in self._checks():
+            if not fits:
+                raise InputError(f"{self.name}: {key} = {getattr(self, key)!r}: {words}")
         names = [quantity.name for quantity in (*self.inputs, *(quantity for quantity, _ in self.outputs))]
         if len(set(names)) != len(names):
-            raise ValueError(f"{self.name}: a name appears twice among {names}")
+            raise InputError(f"{self.name}: a name appears twice among {names}")
         given = {symbol for quantity in self.inputs for symbol in quantity.symbols}
         for quantity, value in self.outputs:
             if len(self.elements_of(value)) != quantity.size:
-                raise ValueError(f"{self.name}: {quantity.name} has shape {quantity.shape}, its expression has not")
+                raise InputError(f"{self.name}: {quantity.name} has shape {quantity.shape}, its expression has not")
         used = set().union(
             *(sp.sympify(value).free_symbols for value in (*(v for _, v in self.outputs), *self.requires))
         )
         if used - given:
-            raise ValueError(
+            raise InputError(
                 f"{self.name} uses {sorted(map(str, used - given))}, which are not among its inputs "
                 f"{sorted(map(str, given))}: add them to the inputs, or substitute them"
             )
+
+    def _checks(self) -> Iterator[tuple[str, bool, str]]:
+        """Of each field, whether its value can be, and what it must be."""
+        yield "description", isinstance(self.description, str) and bool(self.description), "must be text"
+        yield "source", isinstance(self.source, str), "must be text"
+        yield "inputs", all(isinstance(one, Quantity) for one in _listed(self.inputs)), "must be a tuple of Quantity"
+        pairs = all(len(_listed(one)) == 2 and isinstance(one[0], Quantity) for one in _listed(self.outputs))
+        yield "outputs", pairs, "must be pairs of a Quantity and its expression"
+        yield "requires", all(isinstance(one, sp.Basic) for one in _listed(self.requires)), "must be SymPy expressions"
 
     @staticmethod
     def elements_of(value: sp.Basic | sp.MatrixBase) -> tuple[sp.Expr, ...]:
@@ -92,6 +110,9 @@ class Expression:
         flat: list[float] = []
         for argument in arguments:
             flat.extend(argument if isinstance(argument, Iterable) else (argument,))
+        wanted = sum(quantity.size for quantity in self.inputs)
+        if len(flat) != wanted:
+            raise InputError(f"{self.name}: takes {wanted} numbers, {len(flat)} were given")
         with mpmath.workdps(digits):
             return self.function(*(mpmath.mpf(float(value)) for value in flat))
 
@@ -123,5 +144,8 @@ class Expression:
             for quantity in self.inputs
             for symbol, element in zip(quantity.symbols, quantity.elements, strict=True)
         }
-        (output,) = (quantity for quantity, _ in self.outputs if quantity.name == name)
+        names_there = [quantity.name for quantity, _ in self.outputs]
+        if name not in names_there:
+            raise InputError(f"{self.name}: name = {name!r}: must be an output, of {', '.join(names_there)}")
+        output = self.outputs[names_there.index(name)][0]
         return f"{output.latex} = {_SharedLatex({'symbol_names': names}).doprint(self[name])}"

@@ -7,11 +7,33 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from numbers import Real
+from typing import TYPE_CHECKING, Any, Literal
+
+from derivations.errors import InputError
 
 if TYPE_CHECKING:
     import sympy as sp
+
+
+def _is_number(value: Any) -> bool:
+    if not isinstance(value, Real) or isinstance(value, bool):
+        return False
+    try:
+        return not math.isnan(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        return False
+
+
+def _is_count(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 1
+
+
+def _are(values: Any, fit: Callable[[Any], bool]) -> bool:
+    return isinstance(values, tuple) and all(map(fit, values))
+
 
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 
@@ -39,12 +61,33 @@ class Quantity:
     default: float | None = None
 
     def __post_init__(self) -> None:
-        if not IDENTIFIER.match(self.name):
-            raise ValueError(f"quantity name {self.name!r} is no C identifier")
+        if not isinstance(self.name, str) or not IDENTIFIER.match(self.name):
+            raise InputError(f"quantity name {self.name!r} is no C identifier")
+        for key, fits, words in self._checks():
+            if not fits:
+                raise InputError(f"{self.name}: {key} = {getattr(self, key)!r}: {words}")
         if self.components and self.shape != (len(self.components),):
-            raise ValueError(f"{self.name}: shape {self.shape} does not fit {len(self.components)} components")
+            raise InputError(f"{self.name}: shape {self.shape} does not fit {len(self.components)} components")
         if not self.description or not self.unit:
-            raise ValueError(f"{self.name}: a quantity needs a description and a unit ('1' where it has none)")
+            raise InputError(f"{self.name}: a quantity needs a description and a unit ('1' where it has none)")
+
+    def _checks(self) -> Iterator[tuple[str, bool, str]]:
+        """Of each key, whether its value can be, and what it must be."""
+        for key in ("description", "unit", "latex"):
+            yield key, isinstance(getattr(self, key), str), "must be text"
+        yield "latex", self.latex != "", "must not be empty"
+        ordered = _are(self.domain, _is_number) and len(self.domain) == 2 and self.domain[0] < self.domain[1]
+        yield "domain", ordered, "must be the least and the greatest value, which is more"
+        yield "shape", _are(self.shape, _is_count), "must be a tuple of whole numbers, at least 1"
+        yield "kind", self.kind in ("real", "int"), "must be 'real' or 'int'"
+        yield "values", _are(self.values, _is_number), "must be a tuple of numbers"
+        yield "scale", _is_number(self.scale) and 0 < self.scale < math.inf, "must be a finite number, greater than 0"
+        yield "components", _are(self.components, lambda one: isinstance(one, Quantity)), "must be a tuple of Quantity"
+        yield (
+            "default",
+            self.default is None or (_is_number(self.default) and abs(self.default) < math.inf),
+            "must be a finite number",
+        )
 
     @property
     def size(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -77,5 +78,11 @@ def prepare(app: Sphinx) -> None:
         shutil.copytree(mathjax, place, dirs_exist_ok=True)
 
 
+def link_pages(app: Sphinx, what: str, name: str, obj: object, options: object, lines: list[str]) -> None:
+    """A docstring names a page by its file, docs/files.md, which is there beside the source: here it is a link."""
+    lines[:] = [re.sub(r"\bdocs/([\w/]+)\.md\b", r":doc:`docs/\1.md </\1>`", line) for line in lines]
+
+
 def setup(app: Sphinx) -> None:
     app.connect("builder-inited", prepare)
+    app.connect("autodoc-process-docstring", link_pages)

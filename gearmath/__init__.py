@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from gearmath.front.design import settings_of as settings_of
     from gearmath.front.exports import export_c as export_c
     from gearmath.front.exports import export_cnc as export_cnc
+    from gearmath.front.kernels import kernel as kernel
     from gearmath.front.machines import Machine as Machine
     from gearmath.front.machines import load_machine as load_machine
     from gearmath.front.machines import load_probe as load_probe
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from gearmath.front.programs import Program as Program
     from gearmath.front.sets import GearSet as GearSet
     from gearmath.front.sets import load_set as load_set
-    from gearmath.kernels import kernel as kernel
     from gearmath.lowering import lower as lower
     from gearmath.version import __version__ as __version__
 
@@ -50,7 +50,7 @@ _HOMES = {
     "gearmath.control.store": ("MeasurementStore",),
     "gearmath.control.store_evaluation": ("evaluate_run",),
     "gearmath.demo": ("run_demo",),
-    "gearmath.kernels": ("kernel",),
+    "gearmath.front.kernels": ("kernel",),
     "gearmath.engine.kernel": ("Kernel",),
     "gearmath.lowering": ("lower",),
     "gearmath.errors": ("InputError", "ComputationError"),

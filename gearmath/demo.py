@@ -14,6 +14,7 @@ import numpy as np
 import derivations
 from derivations import flank as flank_chapter
 from derivations import gearbox as gearbox_chapter
+from gearmath.arguments.call import checked_call
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.report import SIDES as SIDES_OF_CONTACT
@@ -39,6 +40,7 @@ from gearmath.quality.contact.pair import MeasuredPair, flanks_of
 from gearmath.quality.correction.member import correct
 from gearmath.quality.evaluation.pitch import Pitch, evaluate_pitch
 from gearmath.quality.evaluation.topography import Topography, evaluate_topography
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SIDES
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
@@ -55,8 +57,8 @@ HOBBING_MACHINE, HOBBED_TEETH, EDGES = "hobbing_plewes.toml", 17, 2_000_000
 Say = Callable[[str], object]
 
 
-@dataclass(frozen=True)
-class MemberResult:
+@dataclass(frozen=True, repr=False)
+class MemberResult(Shown):
     """True state of one member, without probe noise, after the first cut and after the corrected one: ``cut``."""
 
     member: str
@@ -78,13 +80,21 @@ class MemberResult:
         first, second = (max(p.total for p in pitches) for pitches in (self.pitch_before, self.pitch_after))
         return first, second
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        profile, pitch = ([1000 * value for value in values] for values in (self.profile, self.cumulative_pitch))
+        return f"{self.member}, before and after the correction", [
+            ("largest profile deviation", profile, "um"),
+            ("F_p", pitch, "um"),
+        ]
 
-def run_demo(folder: Path, say: Say) -> list[MemberResult]:
+
+@checked_call
+def run_demo(folder: str | Path, say: Say) -> list[MemberResult]:
     """Run everything; programs, measurements, corrected sets, pictures and C become the content of ``folder``.
 
     Raises InputError if the folder holds anything that an earlier demo did not write.
     """
-    with new_folder(folder) as place:
+    with new_folder(Path(folder)) as place:
         results = _run_steps(place, say)
     say(f"pictures, programs, measurements, corrected sets and C are in {folder}")
     return results

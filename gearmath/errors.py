@@ -4,9 +4,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from derivations.errors import InputError as InputError
 
-class InputError(ValueError):
-    """Bad input. The message is one sentence that names the file, the key, the value and the limit (exit status 2)."""
+
+class CallError(InputError, TypeError):
+    """A call with an argument that there is not, or without one that is needed: Python's own error of it, too."""
 
 
 class ComputationError(RuntimeError):

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
 import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from gearmath.errors import InputError
 
@@ -31,6 +35,24 @@ def check_writable(path: Path) -> None:
 def write_text(path: Path, text: str) -> None:
     """Write ``text`` (UTF-8, LF) to ``path`` in one step. Raises InputError if the place cannot be written."""
     write_bytes(path, text.encode("utf-8"))
+
+
+def csv_text(head: Sequence[str], rows: Iterable[Iterable[object]]) -> str:
+    """Lines of a CSV file, with the names of the columns in the first; what is None stays empty."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    return text.getvalue()
+
+
+def named(values: Mapping[str, Any] | Sequence[Any], way: str = "") -> Iterator[tuple[str, Any]]:
+    """Every value within mappings and lists, by the way to it: ``flanks.concave.rms_um``, ``remarks.0``."""
+    for key, value in values.items() if isinstance(values, Mapping) else enumerate(values):
+        if isinstance(value, Mapping | list | tuple):
+            yield from named(value, f"{way}{key}.")
+        else:
+            yield f"{way}{key}", value
 
 
 def write_bytes(path: Path, content: bytes) -> None:

@@ -14,10 +14,12 @@ import sympy as sp
 from sympy.core.relational import Relational
 
 from derivations.expression import Expression
+from gearmath.arguments.call import checked_call
 from gearmath.engine.kernel import Kernel
+from gearmath.errors import ComputationError
 
 
-class LoweringError(TypeError):
+class LoweringError(ComputationError, TypeError):
     """An expression uses something CasADi has no exact counterpart for."""
 
 
@@ -54,6 +56,7 @@ RULES: Mapping[type, Callable] = {
 }
 
 
+@checked_call
 def lower(expression: Expression) -> Kernel:
     """The CasADi function of an expression, with the same names, shapes, units and description.
 

@@ -13,6 +13,7 @@ import tomlkit
 from derivations import Quantity, notation
 from gearmath.bevel.blank import BevelBlank
 from gearmath.bevel.slots import Slots
+from gearmath.shown import Shown, Shows
 
 #: Where the three values of a slot, a thickness and a top land stand.
 PLACES = ("toe", "mean", "heel")
@@ -30,14 +31,17 @@ _GREEK = {
 _SPIRAL = {"outer_spiral_angle": "beta_e", "inner_spiral_angle": "beta_i"}
 
 
-@dataclass(frozen=True)
-class TableRow:
+@dataclass(frozen=True, repr=False)
+class TableRow(Shown):
     """One figure of the pair (one value), or of pinion and wheel (two), each a number or three along the tooth."""
 
     name: str
     symbol: str
     unit: str
     values: tuple[Any, ...]
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return self.name.replace("_", " "), [(self.symbol, self.values, self.unit)]
 
 
 def rows(blank: BevelBlank, slots: Slots) -> list[TableRow]:

@@ -125,16 +125,20 @@ def _check_tip(table: str, spec: Flank, side: int) -> None:
         )
 
 
+def check_edge(table: str, radius: float, alpha: float, clearance: float) -> None:
+    """Refuse an edge radius [mm] of a blade of an angle [rad] that rounds it where the mate needs the flank."""
+    share = 1 - math.sin(alpha)
+    if radius * share > _ROUND * clearance:
+        raise InputError(
+            f"{table}.blade_edge_radius = {radius:g}: it rounds the blade up to {radius * share:.3g} mm, where the tip "
+            f"of the mate needs the flank from {_ROUND * clearance:.3g} mm on, {_ROUND:g} of the clearance; it must be "
+            f"at most {_ROUND * clearance / share:.3g} mm"
+        )
+
+
 def _check_foot(table: str, spec: Flank, clearance: float) -> None:
     """Rounded edge and Toprem belong to the root: above the clearance the mate needs the flank itself."""
-    share = 1 - math.sin(spec.nominal.alpha)
-    if spec.blade_edge_radius * share > _ROUND * clearance:
-        raise InputError(
-            f"{table}.blade_edge_radius = {spec.blade_edge_radius:g}: it rounds the blade up to "
-            f"{spec.blade_edge_radius * share:.3g} mm, where the tip of the mate needs the flank from "
-            f"{_ROUND * clearance:.3g} mm on, {_ROUND:g} of the clearance; it must be at most "
-            f"{_ROUND * clearance / share:.3g} mm"
-        )
+    check_edge(table, spec.blade_edge_radius, spec.nominal.alpha, clearance)
     if spec.toprem_angle is None:
         return
     least = spec.nominal.blade_pressure_angle - _TOPREM_ANGLE

@@ -12,8 +12,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from gearmath.bevel.blame import likely, most_changed
-from gearmath.bevel.blame_method import likely_method
 from gearmath.bevel.check_blade import check_blades, check_methods, check_offset
 from gearmath.bevel.check_blank import check_blank, check_blanks, check_cones, check_mate, transverse_module
 from gearmath.bevel.check_ease_off import check_ease_off
@@ -23,7 +21,6 @@ from gearmath.bevel.check_mates import CutFlanks, check_mates, check_space
 from gearmath.bevel.check_motion import check_motions
 from gearmath.bevel.method import cut_generation_of, generation_of
 from gearmath.bevel.misfit import Misfit
-from gearmath.bevel.slips import likely_slip
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.errors import ComputationError, InputError
 from gearmath.files import read_text
@@ -43,6 +40,8 @@ def load_pair(path: Path) -> BevelSet:
     """
 
     def slip(refusal: str) -> str:
+        from gearmath.bevel.slips import likely_slip  # only for what is refused
+
         try:
             return likely_slip(tomllib.loads(read_text(path)), refusal, _file_passes)
         except (ValueError, RecursionError):  # no TOML, which the refusal says
@@ -71,6 +70,9 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
     try:
         _check(pair.members, pair.shaft_angle, cut)
     except Misfit as misfit:
+        from gearmath.bevel.blame import likely
+        from gearmath.bevel.blame_method import likely_method
+
         cause = ""
         if len(pair.members) == len(MEMBERS) and all(len(flanks) == len(FLANKS) for flanks in cut.values()):
             cause = likely_method(pair.members, lambda members: _passes(members, pair.shaft_angle))
@@ -82,6 +84,14 @@ def check_pair(pair: BevelSet, slip: Callable[[str], str] = lambda _: "") -> Non
         raise InputError(f"{misfit}{cause}") from misfit
     except InputError as error:
         raise InputError(f"{error}{slip(str(error))}") from error
+
+
+def check_computed(pair: BevelSet) -> None:
+    """The same for settings that were computed: no single one of them is to blame. Raises InputError."""
+    try:
+        _check(pair.members, pair.shaft_angle, {name: {} for name in pair.members})
+    except Misfit as misfit:
+        raise InputError(str(misfit)) from misfit
 
 
 def check_corrected(pair: BevelSet) -> None:
@@ -167,6 +177,8 @@ def _check_corrected(member: Member, name: str, flank: str, nominal: CutFlank) -
         found = cut_flank(corrected, name, flank, cut_generation_of(member, flank), True)
         _check_change(member, name, flank, nominal, found)
     except Misfit as misfit:
+        from gearmath.bevel.blame import most_changed
+
         raise InputError(f"{misfit}; the setting changed most is {most_changed(member, name, flank)}") from misfit
 
 

@@ -23,13 +23,14 @@ from gearmath.bevel.root import CORNER, mean_place
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, Member, Settings
 from gearmath.specs.cut import RATIO
+from gearmath.specs.ratio import DEGREE, RADIAN
 
 #: What counts as one: spiral and pressure angle off those wanted. [rad]
 _SPIRAL, _PRESSURE = math.radians(2), math.radians(5)
 #: A point that is not there at all.
 _NONE = 100.0
 _CALLS = 4
-_SLIPS = (-1.0, 25.4, 1 / 25.4, 10.0, 0.1, math.pi / 180, 180 / math.pi, -10.0, -25.4)
+_SLIPS = (-1.0, 25.4, 1 / 25.4, 10.0, 0.1, DEGREE, RADIAN, -10.0, -25.4)
 _STEP = {"ratio_of_roll": 1e-3}  # else in mm or degrees
 _PHASE = "work_rotation_offset"  # moves mean point and root around the axis alone
 

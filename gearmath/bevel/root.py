@@ -69,8 +69,7 @@ def mean_place(member: Member) -> tuple[np.ndarray, np.ndarray]:
 def root_trace(member: Member, flank: str, how: Generation, start: np.ndarray, narrower: float = 0.0) -> SurfacePoints:
     """Points (13,) that the corner of the blade leaves, at the places ``ACROSS``; those not found have not converged.
 
-    ``start`` (1,3) is the contact at the mean point. With ``narrower`` [mm], the corner on the other side of a cutter
-    of that point width.
+    ``start`` (1,3) is the contact at the mean point. With ``narrower`` [mm], a point so far along the tip from there.
     """
     blank = member.blank
     distance, _ = _heights(blank)
@@ -84,11 +83,12 @@ def tip_plane(spec: Flank, side: int, narrower: float = 0.0) -> tuple[Section, f
     """The tip plane of a blade as a section that is square to the cutter's axis, and its u where the corner is; with
     ``narrower`` [mm] so far from it.
 
-    Of a blade whose tip is at the plane of its point radius a straight one; else the lowest point of a vanishing round,
-    as the blade's plane is turned about the point radius (17.2) and that must stay.
+    Where the blade's plane is radial, or is left at its point radius, a straight one; else the lowest point of a
+    vanishing round, as the blade's plane is turned about the point radius (17.2) and that must stay.
     """
     nominal = spec.nominal
-    if spec.blade_tip_height == 0:
+    radial = not (narrower and spec.blade_offset_angle)
+    if spec.blade_tip_height == 0 and radial:
         return Section(0.0, 1.0, nominal.blade_point_radius - side * narrower, FLAT_BLADE), 0.0
     radius = tip_radius(spec, side) - side * narrower
     point = (radius, spec.blade_tip_height + CORNER, CORNER)
@@ -125,10 +125,21 @@ def slot_widths(
     width = real
     for _ in range(_TRIALS):
         tried = float(width[len(width) // 2])
-        found = root_trace(member, flank, how, start, tried)
+        found = root_trace(_with_point_radius(member, flank, tried), flank, how, start)
         left = _across(member.blank, own, np.where(found.converged[:, None], found.point, np.nan))
         width = tried * real / left
     return Widths.of(width)
+
+
+def _with_point_radius(member: Member, flank: str, width: float) -> Member:
+    """The member with the other corner of a cutter of a point width [mm] in the place of a flank's own: it turns about
+    a point radius of its own (17.2)."""
+    nominal = member.flank(flank).nominal
+    settings = {
+        "blade_point_radius": nominal.blade_point_radius - SIDES[flank] * width,
+        "blade_pressure_angle": nominal.blade_pressure_angle,
+    }
+    return member.model_copy(update={flank: member.flank(flank).model_copy(update={"design": None, **settings})})
 
 
 def cone_distances(blank: Blank) -> tuple[tuple[float, float], np.ndarray]:

@@ -7,12 +7,11 @@ from __future__ import annotations
 
 import copy
 import itertools
-import math
 from collections.abc import Iterator
 from typing import Any
 
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, Blank, Flank
-from gearmath.specs.ratio import INCH
+from gearmath.specs.ratio import INCH, RADIAN
 from gearmath.specs.sheet import unit_of
 
 _OTHER_HAND = {"left": "right", "right": "left"}
@@ -22,7 +21,7 @@ _MOST_TEETH, _LARGEST = 1000, 1e9
 _UNITS = (
     ("mm", "lengths", INCH, "in inches"),
     ("mm", "lengths", 1 / INCH, "in mm"),
-    ("degree", "angles", 180 / math.pi, "in radians"),
+    ("degree", "angles", RADIAN, "in radians"),
 )
 
 Values = dict[str, Any]

@@ -6,7 +6,6 @@ A slip is named only where the file without it passes the whole check.
 from __future__ import annotations
 
 import itertools
-import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
@@ -15,11 +14,11 @@ from gearmath.bevel.misprints import exchanged_digits, minutes_as_decimals, wron
 from gearmath.bevel.slip_tables import Slip, Values, changed, is_number, mate, of_counts, of_tables, tables_of, unit_in
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS
 from gearmath.specs.cut import ANGULAR, RATIO
-from gearmath.specs.ratio import INCH
+from gearmath.specs.ratio import DEGREE, INCH, RADIAN
 
 #: What a length, an angle or a ratio may have been written as, the most usual first.
 _OF_ALL: tuple[float, ...] = (-1.0, 0.1, 10.0)
-_OF_LENGTHS, _OF_ANGLES = (INCH, 1 / INCH), (180 / math.pi, math.pi / 180)
+_OF_LENGTHS, _OF_ANGLES = (INCH, 1 / INCH), (RADIAN, DEGREE)
 #: What a backlash hangs on as much as on other settings: a smaller one would always do.
 _PHASE = "work_rotation_offset"
 #: A diameter may stand for this one; that of the other hand is 180 degrees less it.

@@ -19,6 +19,7 @@ from gearmath.bevel.root import ENDS, Widths, mean_place, root_trace, root_width
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
 
 #: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]
@@ -55,8 +56,8 @@ class SpaceFlank:
         return proper[:, None] & (np.sign(self.sense) != reference)
 
 
-@dataclass(frozen=True)
-class ToothSpace:
+@dataclass(frozen=True, repr=False)
+class ToothSpace(Shown):
     """Space 0 of a member: both flanks, with the same number of rows and columns, and the member's pitch [rad].
 
     ``root`` are the widths of its root between the corners of the blades, ``slots`` the slot widths by the flank at
@@ -86,6 +87,11 @@ class ToothSpace:
         """Transverse arc (columns,) [mm] that the space leaves of the tip; zero or less where the tooth is pointed."""
         low, _ = self.ordered
         return np.hypot(low.point[0, :, 0], low.point[0, :, 1]) * (self.pitch - self.width(0))
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        rows, columns, _ = self.concave.point.shape
+        figures: list[Shows] = [("rows", rows, ""), ("columns", columns, "")]
+        return "tooth space", [*figures, ("root width at the mean", self.root.mean, "mm")]
 
 
 @lru_cache(maxsize=16)

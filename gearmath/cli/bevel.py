@@ -17,6 +17,7 @@ from gearmath.cli.common import (
     grid_of,
     member_of,
     nominal_words,
+    of,
     output,
     table,
 )
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 @click.command(epilog=FLANK_CSV)
 @SET
 @MEMBER
-@click.option("--flank", "side", type=click.Choice(["concave", "convex"]), required=True, help="Flank of the member.")
+@click.option("--flank", "side", type=of("flank"), required=True, help="Flank of the member.")
 @click.option("--grid", "size", show_default="5x9", help="Rows (root to tip) x columns (toe to heel).")
 @click.option("--margin", type=float, show_default="0.1", help="Part of face and depth left out at each end.")
 @click.option("--margin-root", "root", type=float, help="Part of the working depth left out at the root.")
@@ -79,7 +80,7 @@ def flank(
 @click.command()
 @SET
 @MEMBER
-@click.option("--columns", type=click.IntRange(3, 400), default=25, show_default=True, help="Columns toe to heel.")
+@click.option("--columns", type=of("columns"), default=25, show_default=True, help="Columns toe to heel.")
 @click.option("--space", is_flag=True, help="Write the surface of one tooth space, not the closed solid of the member.")
 @JSON
 @output("STL", ".stl")
@@ -91,19 +92,22 @@ def tooth(gear_set: str, member: str | None, columns: int, space: bool, as_json:
     one = member_of(pair, member)
     with about(pair.source):
         made = one.tooth(columns)
-        mates, note = pair.mates(), pair.edge_note()
+        mates, notes = pair.mates(), [made.note, pair.edge_note()]
     triangles, figures = made.to_stl(target, whole_member=not space), made.figures
     if as_json:
         echo_json({"triangles": triangles, **figures} | ({} if mates is None else {"pair": mates}))
         return
     click.echo(table(["figure", "value"], [[name, f"{value:.4f}"] for name, value in figures.items()]))
     click.echo(
-        "thicknesses are transverse arcs: mean_ at the mean point of the pitch cone, reference_ at the middle of the"
+        "thicknesses, top lands and root widths are transverse arcs ('gearmath design' and the summary sheet have the"
     )
-    click.echo("grid of flank files, where 'gearmath evaluate' measures")
+    click.echo(
+        "normal top land): mean_ at the mean point of the pitch cone, reference_ at the middle of the grid of flank"
+    )
+    click.echo("files, where 'gearmath evaluate' measures")
     if mates is not None:
         _echo_pair(mates)
-    if note:
+    for note in filter(None, notes):
         click.echo(f"note: {note}")
     click.echo(f"{target}: {triangles} triangles")
 

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from gearmath.arguments import kinds
+from gearmath.arguments.known import KNOWN, MOST_POINTS
 from gearmath.cli.waiting import hidden
 from gearmath.errors import InputError
 from gearmath.errors import about as about
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
     from gearmath.front.member import Member
     from gearmath.front.sets import GearSet
 
-_MOST_POINTS = 1_000_000
 #: The gear set of a verb whose first argument is another file.
 SET_OPTION = click.option(
     "--set", "gear_set", metavar="SET.toml", required=True, help="Gear set: a file, or a bundled one."
@@ -55,11 +56,24 @@ REGISTER = click.option(
 JSON = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
+def of(name: str, um: bool = False) -> click.ParamType:
+    """What an option may be: the same as the argument of that name in Python, which has mm where it has ``um`` here."""
+    kind = KNOWN[name]
+    if isinstance(kind, kinds.OneOf):
+        return click.Choice([str(one) for one in kind.choices])
+    if isinstance(kind, kinds.Whole):
+        return click.IntRange(kind.low, kind.high)
+    assert isinstance(kind, kinds.Number)
+    low, high, unit = (1000 * kind.low, 1000 * kind.high, "um") if um else (kind.low, kind.high, kind.unit)
+    return Number(low, high, unit, kind.above)
+
+
 class Number(click.FloatRange):
     """A number within limits, which nan is not. What is wrong with it is said before any work is done."""
 
     def __init__(self, low: float, high: float, unit: str = "", above: bool = False) -> None:
-        super().__init__(low, high, min_open=above)
+        least, most = (int(limit) if limit == int(limit) else limit for limit in (low, high))
+        super().__init__(least, most, min_open=above)
         words = f"be greater than {low:g} and at most {high:g}" if above else f"lie between {low:g} and {high:g}"
         self.words = f"must {words} {unit}".rstrip()
 
@@ -158,8 +172,8 @@ def grid_of(size: str) -> tuple[int, int]:
     """Rows and columns of the option --grid. Raises InputError."""
     match = re.fullmatch(r"(\d{1,6})x(\d{1,6})", size)
     rows, columns = (int(part) for part in match.groups()) if match else (0, 0)
-    if not (rows >= 2 and columns >= 2 and rows * columns <= _MOST_POINTS):
-        raise InputError(f"--grid {size}: must read like 5x9, two or more each way, at most {_MOST_POINTS} points")
+    if not (rows >= 2 and columns >= 2 and rows * columns <= MOST_POINTS):
+        raise InputError(f"--grid {size}: must read like 5x9, two or more each way, at most {MOST_POINTS} points")
     return rows, columns
 
 

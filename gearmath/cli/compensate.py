@@ -15,10 +15,10 @@ from gearmath.cli.common import (
     REGISTER,
     SET,
     SET_OPTION,
-    Number,
     about,
     bars,
     echo_json,
+    of,
     output,
     table,
 )
@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 @click.option("--higher-order", is_flag=True, help="Correct motions as well: modified roll, helical motion, ...")
 @click.option(
     "--objective",
-    type=click.Choice(["points", "surface"]),
+    type=of("objective"),
     default="points",
     show_default=True,
     help="Fit the points, or the coefficients of their cubic surfaces.",
@@ -66,26 +66,26 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--bounds",
-    type=click.Choice(["machine", "design"]),
+    type=of("bounds"),
     default="machine",
     show_default=True,
     help="How far settings may change: as a machine may be off, or as a new design may want it.",
 )
-@click.option("--root-limit", type=Number(0.001, 2, "mm"), metavar="MM", help="Most that the root line may move.")
+@click.option("--root-limit", type=of("root_limit"), metavar="MM", help="Most that the root line may move.")
 @click.option(
     "--noise",
     "--sigma-um",
     "noise",
-    type=Number(0, 100, "um"),
+    type=of("noise_um"),
     metavar="UM",
     help="Noise of one deviation; else what is left. With it, or with u_um in the file, settings have uncertainties.",
 )
 @click.option(
-    "--thickness", type=Number(-500, 500, "um"), default=0.0, metavar="UM", help="Leave the teeth thicker by so much."
+    "--thickness", type=of("thickness", um=True), default=0.0, metavar="UM", help="Leave the teeth thicker by so much."
 )
 @click.option(
     "--thickness-by",
-    type=click.Choice(["work_rotation_offset", "sliding_base"]),
+    type=of("thickness_by"),
     default="work_rotation_offset",
     show_default=True,
     help="What makes them thicker.",
@@ -187,7 +187,7 @@ def _mate(pair: GearSet, member: Member) -> Member:
 @click.option("--advance", is_flag=True, help="Find an axial shift too, not only the rotation.")
 @click.option(
     "--least",
-    type=Number(0, 2000, "um"),
+    type=of("least", um=True),
     default=0.0,
     show_default=True,
     metavar="UM",

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from gearmath.arguments.known import LEAST_STEP, MOST_DEG, MOST_MM, MOST_STEP
 from gearmath.cli.common import JSON, SET, bars, echo_json, plot, save_plot, table
 from gearmath.errors import InputError
 
 if TYPE_CHECKING:
     from gearmath.bevel.contact.system import Assembly, System
 
-_FINEST, _COARSEST = 0.01, 15.0
 _LIMIT_TRIALS = 10
+_SENSES = tuple((name, sense) for name in ("v", "h") for sense in ("minus", "plus"))
 #: Figures of a measured pair with an uncertainty: key, words and unit.
 _SURE = (
     ("peak_to_peak_arcsec", "the transmission error", "arcsec"),
@@ -36,7 +37,7 @@ _SURE = (
     "--tolerance",
     "with_tolerance",
     is_flag=True,
-    help="Also V and H, from the assembly as given, at which the pattern reaches an edge.",
+    help="Also V and H, from the assembly as given, at which the pattern reaches an edge or the outcome changes.",
 )
 @click.option(
     "--measured-pinion", type=click.Path(path_type=Path), metavar="CSV", help="Measured flank CSV of the pinion."
@@ -92,8 +93,6 @@ def contact(
 
 
 def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
-    from gearmath.bevel.contact.system import MOST_DEG, MOST_MM
-
     for name, value, most, unit in (
         ("--v", v, MOST_MM, "mm"),
         ("--h", h, MOST_MM, "mm"),
@@ -102,8 +101,8 @@ def _check(v: float, h: float, j: float, shaft: float, step: float) -> None:
     ):
         if not abs(value) <= most:
             raise InputError(f"{name} {value:g}: must lie between -{most:g} and {most:g} {unit}")
-    if not _FINEST <= step <= _COARSEST:
-        raise InputError(f"--step {step:g}: must lie between {_FINEST:g} and {_COARSEST:g} degrees")
+    if not LEAST_STEP <= step <= MOST_STEP:
+        raise InputError(f"--step {step:g}: must lie between {LEAST_STEP:g} and {MOST_STEP:g} degrees")
 
 
 def _lost(system: System, side: str, given: Assembly) -> str:
@@ -145,6 +144,9 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
     runs_on = [kind for kind in result["leading_kinds"] if kind != "interior"]
     if runs_on and not result["outcome"].startswith(runs_on[0]):
         lines[0] += f", running on {' and '.join(f'{kind} contact' for kind in runs_on)} in turn"
+    if result["on_fillets"]:
+        lines[0] += f": {', '.join(result['on_fillets'])}"
+    lines += [_gap_text(gap) for gap in result["gaps"]]
     rows = [
         ["transmission error, peak to peak", "none" if spread is None else f"{spread:.3f} arcsec"],
         ["contact ratio within the flanks", f"{result['contact_ratio']:.3f}"],
@@ -187,7 +189,7 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
             [f"V and H for contact at {place}", "none" if found is None else f"{found[0]:+.4f} and {found[1]:+.4f} mm"]
         )
     if "tolerance_mm" in result:
-        rows += _tolerance_rows(result["tolerance_mm"])
+        rows += _tolerance_rows(result["tolerance_mm"], result["outcome"])
     lines.append(table(["figure", "value"], rows))
     if result["path"]:
         head = ["pinion deg", "kind", "error arcsec", "cone distance mm", "height mm"]
@@ -205,16 +207,30 @@ def _text(side: str, flank: str, result: dict[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _tolerance_rows(found: dict[str, Any] | None) -> list[list[str]]:
-    """V and H to both senses, and the edge that the pattern reaches there."""
+def _gap_text(gap: dict[str, Any]) -> str:
+    """Where the path of a pair of teeth breaks off."""
+    step = gap["step_arcsec"]
+    ahead = "with no other contact there" if step is None else f"{step:.3f} arcsec ahead of any other"
+    return (
+        f"gap in the path: with the pinion at {gap['pinion_rotation_deg']:.3f} degrees the contact that carries ends, "
+        f"{ahead}; it does not go on along flanks, edges, or fillets of rounded blades: the members run into each "
+        "other below the fillet, or a flank is undercut"
+    )
+
+
+def _tolerance_rows(found: dict[str, Any] | None, outcome: str) -> list[list[str]]:
+    """V and H to both senses: to another outcome, and to the edge that the pattern reaches."""
     if found is None:
         return [["V and H to the edges", "none: no pattern with edges of its own"]]
     rows = []
-    for name in ("v", "h"):
-        for sense in ("minus", "plus"):
-            value, edge = found[name][sense]["value"], found[name][sense]["edge"]
-            text = f"{value:+.3f} mm: no edge up to there" if edge is None else f"{value:+.3f} mm: {edge}"
-            rows.append([f"{name.upper()} to the {sense} side", text])
+    changes = found["outcome_changes"]
+    if changes is None:
+        rows.append(["V and H to the limits", f"none: {outcome} as it stands"])
+    for name, sense in _SENSES if changes else ():
+        (value, what), (far, edge) = changes[name][sense].values(), found[name][sense].values()
+        side = f"{name.upper()} to the {sense} side"
+        rows.append([side, f"{value:+.4f} mm: {what or 'no other outcome up to there'}"])
+        rows.append([f"{side}, pattern", f"{far:+.3f} mm: {edge or 'no edge up to there'}"])
     if found["reached"]:
-        rows.append(["reached as it stands", ", ".join(found["reached"])])
+        rows.append(["pattern as it stands reaches", ", ".join(found["reached"])])
     return rows

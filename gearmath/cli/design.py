@@ -67,7 +67,7 @@ def design(
         made = designed(data, gear, begin)
     made.gear_set.save(target)
     if sheet is not None:
-        made.gear_set.to_summary(sheet)
+        load_set(target).to_summary(sheet)  # of the file, with the digits that it keeps and so its digest
     if picture is not None:
         save_plot(made.plot(), picture, as_json)
     if as_json:

@@ -17,12 +17,13 @@ if TYPE_CHECKING:
 def reverse_design(points: Path, data: str, target: Path, sheet: Path | None, as_json: bool) -> None:
     """Find the settings of the member of a flank file, write them as a set, and print how well they do."""
     from gearmath.front.design import settings_of
+    from gearmath.front.sets import load_set
 
     with bars(quiet=as_json) as begin:
         made = settings_of(points, data, begin)
     made.gear_set.save(target)
     if sheet is not None:
-        made.gear_set.to_summary(sheet)
+        load_set(target).to_summary(sheet)  # of the file, with the digits that it keeps and so its digest
     figures = made.to_dict()
     if as_json:
         echo_json({"set": str(target), **figures})

@@ -19,6 +19,7 @@ from gearmath.cli.common import (
     grid_of,
     member_of,
     nominal_words,
+    of,
     output,
 )
 from gearmath.cli.dialect import CONTROL
@@ -42,11 +43,18 @@ def teensy(machine: str, folder: Path) -> None:
 
     Firmware, the machine's constants, wiring diagram and README. The folder's name becomes the sketch's name.
     """
+    from gearmath.export.reservations import reservations
+    from gearmath.export.teensy import machine_of
     from gearmath.front.hobbing import export_teensy
     from gearmath.front.machines import load_hobber
 
-    names = export_teensy(load_hobber(machine), folder)
+    hobber, before = load_hobber(machine), machine_of(folder)
+    names = export_teensy(hobber, folder)
     click.echo(f"{folder}: {len(names)} files")
+    if before is not None and before != hobber.name:
+        click.echo(f"  they replace those of {before!r}")
+    for said in reservations(hobber):
+        click.echo(f"  {said.replace('`', '')}")
 
 
 @export.command()
@@ -55,7 +63,7 @@ def teensy(machine: str, folder: Path) -> None:
 @CONTROL
 @click.option(
     "--blocks",
-    type=click.Choice(["g1", "poly"]),
+    type=of("blocks"),
     default="g1",
     show_default=True,
     help="Straight blocks, or polynomials where the cutter rolls, in the programs of gm-post.",
@@ -119,7 +127,7 @@ def stl(gear_set: str, target: Path) -> None:
 @export.command()
 @SET
 @MEMBER
-@click.option("--flank", type=click.Choice(["concave", "convex"]), required=True)
+@click.option("--flank", type=of("flank"), required=True)
 @click.option("--grid", default="5x9", show_default=True, help="Rows (root to tip) x columns (toe to heel).")
 @click.option(
     "--margin", type=float, default=0.1, show_default=True, help="Part of depth and width left out all round."

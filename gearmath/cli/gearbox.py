@@ -5,13 +5,12 @@ from __future__ import annotations
 import functools
 from collections.abc import Callable
 from dataclasses import asdict
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from gearmath.cli.common import JSON, echo_json, plot, save_plot
+from gearmath.cli.common import JSON, echo_json, of, plot, save_plot
 from gearmath.cli.gearbox_cut import choose, cut
 
 if TYPE_CHECKING:
@@ -26,15 +25,17 @@ _JOB = (
     click.option("--teeth", type=int, help="Teeth of the gear to be cut (hobbing machine)."),
     click.option("--pitch", help="Pitch of the thread to be cut, such as 1.25mm or 8tpi (lathe)."),
     click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread."),
-    click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out."),
+    click.option("--hand", type=of("hand"), help="Hand of helix or thread; right if left out."),
     click.option("--helix", type=float, help="Helix angle in degrees."),
-    click.option("--cut", type=click.Choice(["climb", "conventional"]), help="Sense of the feed; climb if left out."),
+    click.option("--cut", type=of("cut"), help="Sense of the feed; climb if left out."),
     click.option("--feed", help="Feed in mm per turn of the table, for a helix without an encoder on the feed."),
     click.option("--hob", help="One hob of the machine file, such as 32dp or m1; all of them if left out."),
     click.option("--shift", type=float, help="Profile shift in modules."),
     click.option("--pin", type=float, help="Diameter of the measuring pins in mm; 1.68 modules if left out."),
     click.option("--run-up", type=float, help="Seconds of the hob or spindle from rest to its speed, or to rest."),
-    click.option("--rpm", type=float, help="Speed of hob or spindle; the highest within the limits if left out."),
+    click.option(
+        "--rpm", type=float, help="Speed of hob or spindle; 90 % of the highest within the limits if left out."
+    ),
 )
 
 
@@ -78,17 +79,17 @@ def plan_job(job: Job, as_json: bool) -> None:
     from gearmath.cli.gearbox_text import plan_text
 
     if as_json:
-        echo_json(_values(job.to_dict()))
+        echo_json(job.to_dict())
     else:
         click.echo(plan_text(job.plan, job.machine))
 
 
 @gearbox.command("simulate")
 @_job_options
-@click.option("--pattern", type=click.Choice(["forward", "dither", "reversals"]), required=True)
+@click.option("--pattern", type=of("pattern"), required=True)
 @click.option("--edges", type=click.IntRange(min=1), required=True, help="Encoder edges to run through.")
 @click.option("--start", type=click.IntRange(min=0), default=0, show_default=True, help="Count before the first edge.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the random reversals.")
+@click.option("--seed", type=of("seed"), default=0, show_default=True, help="Seed of the random reversals.")
 @plot("the errors over time")
 @JSON
 def simulate(
@@ -104,6 +105,7 @@ def simulate(
     from tqdm import tqdm
 
     from gearmath.cli.gearbox_text import simulation_text
+    from gearmath.front.hobbing import plain_numbers
     from gearmath.gearbox.simulation import Trace
 
     trace, plan = Trace(edges), job.plan
@@ -113,7 +115,7 @@ def simulate(
         save_plot(job.plot(trace=trace), picture, as_json)
     if as_json:
         terms = ("steps_numerator", "steps_denominator", "feed_numerator")
-        echo_json(_values({key: getattr(plan, key) for key in terms} | asdict(result)))
+        echo_json(plain_numbers({key: getattr(plan, key) for key in terms} | asdict(result)))
     else:
         click.echo(simulation_text(result, plan))
 
@@ -136,9 +138,3 @@ def _plan(machine: HobbingMachine, options: dict[str, Any]) -> Job:
             if key in given:
                 raise click.UsageError(f"--{key} has no meaning without --helix")
     return plan(machine, **given)
-
-
-def _values(values: dict[str, Any]) -> dict[str, Any]:
-    """For JSON: a fraction as number, and exactly beside it."""
-    exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
-    return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact

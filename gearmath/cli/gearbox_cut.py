@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 from click.core import ParameterSource
 
-from gearmath.cli.common import JSON, NewFile, Number, bars, echo_json
+from gearmath.cli.common import JSON, NewFile, Number, bars, echo_json, of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,11 +46,11 @@ _MEANINGLESS = {
 @click.option("--hob", help="A hob of the machine file, such as m1; the first if left out.")
 @click.option("--starts", type=int, help="Starts of the hob, instead of the machine file's; of the thread.")
 @click.option("--helix", type=float, help="Helix angle in degrees.")
-@click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of helix or thread; right if left out.")
+@click.option("--hand", type=of("hand"), help="Hand of helix or thread; right if left out.")
 @click.option(
     "--cut",
     "way",
-    type=click.Choice(["climb", "conventional"]),
+    type=of("cut"),
     default="climb",
     show_default=True,
     help="Sense of the feed: climb hobbing or conventional.",
@@ -63,25 +63,25 @@ _MEANINGLESS = {
     show_default=True,
     help="Axial feed, in mm per turn of the table.",
 )
-@click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option("--width", type=of("face_width"), help="Face width in mm; ten modules if left out.")
 @click.option(
     "--hob-shift",
-    type=Number(-500.0, 500.0, "mm"),
+    type=of("hob_shift"),
     default=0.0,
     show_default=True,
     help="The hob's middle from the pitch point, in mm, to the right as seen from the hob towards the gear.",
 )
-@click.option("--length", type=Number(1.0, 3000.0, "mm"), default=100.0, show_default=True, help="Of a thread, in mm.")
+@click.option("--length", type=of("length"), default=100.0, show_default=True, help="Of a thread, in mm.")
 @click.option("--rpm", type=float, help="Speed of hob or spindle in rpm; the highest within the limits if left out.")
 @click.option(
     "--seconds",
-    type=Number(0.0, 86_400.0, "s"),
+    type=of("seconds"),
     default=0.0,
     show_default=True,
     help="How long the hob has run before the cut, in s.",
 )
-@click.option("--rule", type=click.Choice(["exact", "ideal", "float"]), default="exact", show_default=True)
-@click.option("--compare", type=click.Choice(["ideal", "exact", "float"]), help="Another rule beside it.")
+@click.option("--rule", type=of("rule"), default="exact", show_default=True)
+@click.option("--compare", type=of("compare"), help="Another rule beside it.")
 @click.option("--plot", "chart", type=NewFile(), metavar="CHART", help="Inspection chart to write: PNG, SVG or HTML.")
 @click.option("--csv", "points", type=NewFile(), metavar="POINTS.csv", help="Measured points to write.")
 @click.option(
@@ -206,11 +206,11 @@ def _cut_thread(
 @click.command()
 @click.argument("machine", default="hobbing_default.toml")
 @click.option("--class", "wanted", type=int, required=True, help="Class of ISO 1328-1 to reach, 1 to 11.")
-@click.option("--module", type=Number(0.1, 25.0, "mm"), required=True, help="Normal module in mm.")
+@click.option("--module", type=of("module"), required=True, help="Normal module in mm.")
 @click.option("--teeth", type=click.IntRange(min=1), required=True, help="Teeth of the gear.")
-@click.option("--width", type=Number(1.0, 1000.0, "mm"), help="Face width in mm; ten modules if left out.")
+@click.option("--width", type=of("face_width"), help="Face width in mm; ten modules if left out.")
 @click.option("--helix", type=float, help="Helix angle in degrees; a spur gear if left out.")
-@click.option("--hand", type=click.Choice(["right", "left"]), help="Hand of the helix; right if left out.")
+@click.option("--hand", type=of("hand"), help="Hand of the helix; right if left out.")
 @JSON
 def choose(
     machine: str,

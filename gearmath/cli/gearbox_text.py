@@ -7,6 +7,7 @@ from fractions import Fraction
 
 from gearmath.errors import counted
 from gearmath.gearbox.job import PROPOSED, GearboxJob, ThreadPlan
+from gearmath.gearbox.motion import HOPELESS_TURNS
 from gearmath.gearbox.simulation import Simulation
 from gearmath.gearbox.train import GearboxPlan, HobbedBlank
 from gearmath.specs.hobbing import HobbingMachine
@@ -29,14 +30,15 @@ def simulation_text(result: Simulation, job: GearboxJob) -> str:
     """What became of the compiled rule and of the floating one."""
     feed = f" and {job.feed_numerator}/{job.steps_denominator} of the feed" if job.feed_numerator else ""
     moved = f" and the feed at {result.feed_position}" if job.feed_numerator else ""
+    leading, driven = ("spindle", "lead screw") if isinstance(job, ThreadPlan) else ("hob", "table")
     return "\n".join(
         [
             f"{result.edges} edges, {result.pattern}, {job.steps_numerator}/{job.steps_denominator} "
-            f"steps per count{feed}; the hob ends at count {result.encoder_position}{moved}",
+            f"steps per count{feed}; the {leading} ends at count {result.encoder_position}{moved}",
             f"  compiled integer rule    worst error {float(result.worst_error):10.4f} steps, "
-            f"exactly {result.worst_error}; the table ends at step {result.position}",
+            f"exactly {result.worst_error}; the {driven} ends at step {result.position}",
             f"  float32 rule             worst error {float(result.float_worst_error):10.4f} steps; "
-            f"the table ends at step {result.float_position}",
+            f"the {driven} ends at step {result.float_position}",
         ]
     )
 
@@ -48,11 +50,6 @@ def _rates(job: GearboxJob, what: str) -> Iterator[str]:
     yield f"  {what:7s}{job.rpm:9.1f} rpm   {job.hob_rpm_percent:5.1f} % of the limit {most}"
     yield f"  edges  {job.edge_rate_hz:9.0f} Hz    {job.edge_rate_percent:5.1f} % of the limit"
     yield f"  steps  {job.step_rate_hz:9.0f} Hz    {job.step_rate_percent:5.1f} % of the limit"
-    if not job.carried_at_every_speed and not isinstance(job, ThreadPlan):
-        yield (
-            f"  the firmware refuses this job while limits.hob_rpm is more than {int(job.highest_rpm)}: write at "
-            "most that in the machine file for it, and export anew"
-        )
 
 
 def _motor(job: GearboxJob, machine: HobbingMachine) -> Iterator[str]:
@@ -74,7 +71,11 @@ def _motion(job: GearboxJob, what: str) -> Iterator[str]:
             f"{motion.catch_up_turns:.1f} turns of the {what}"
         )
     else:
-        yield f"  engage only up to {motion.engage_rpm:.0f} rpm: above, the steps leave no room to catch up"
+        yield (
+            f"  engage only up to {motion.engage_rpm:.0f} rpm: above, catching up takes more than "
+            f"{HOPELESS_TURNS:.0f} turns of the {what}, where the firmware gives up; a higher "
+            "limits.acceleration_hz_per_s helps"
+        )
 
 
 def _resolution(count_um: float, step_um: float, where: str) -> str:
@@ -105,6 +106,11 @@ def _settable(pitch: Fraction) -> bool:
 def _gear(job: GearboxPlan) -> Iterator[str]:
     shift = f", profile shift {job.profile_shift:g}" if job.profile_shift else ""
     yield f"{job.machine}: {counted(job.teeth, 'tooth')}{shift}, {job.hob_starts}-start {job.hob_hand}-hand hob"
+    if not job.carried_at_every_speed:
+        yield (
+            f"  REFUSED by the firmware as the machine file is: with limits.hob_rpm above {int(job.highest_rpm)} its "
+            "motor needs too many steps/s; write at most that for it, and export anew. What follows is for that speed."
+        )
     yield f"  R = {job.exact_pulse_ratio} = {job.pulse_ratio:.9g} encoder counts per motor step"
     if job.helix is None:
         return
@@ -134,6 +140,9 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
             f"{blank.blank_diameter / 2:.4f} mm radius; more teeth are needed, or a profile shift (--shift)"
         )
         return
+    core = blank.blank_diameter - 2 * blank.cut_depth
+    if core < blank.cut_depth:
+        yield f"    core           {_length(core)}  in diameter is all that the cut leaves"
     if blank.undercut is not None:
         yield (
             f"    undercut       below {blank.undercut.least_teeth:.1f} teeth; a profile shift of "
@@ -149,13 +158,13 @@ def _blank(blank: HobbedBlank) -> Iterator[str]:
         needs = f", face width over {blank.span.face_width:.2f} mm" if blank.span.face_width else ""
         yield f"    span           {_length(blank.span.length)}  over {counted(blank.span.teeth, 'tooth')}{needs}"
     else:
-        yield "    span           none: the jaws would not touch the flanks on both sides of two teeth or more"
+        yield "    span           none: the jaws would not touch the involute on both sides of two teeth or more"
     if blank.chord is not None:
         yield f"    chord          {_length(blank.chord.thickness)}  at {blank.chord.height:.4f} mm below the tip"
     if blank.over_pins is not None:
         yield f"    over pins      {_length(blank.over_pins.length)}  of {blank.over_pins.pin:.4g} mm"
     else:
-        yield "    over pins      none: such pins do not rest on the flanks and stand out above the tips; try --pin"
+        yield "    over pins      none: such pins do not rest on the involute and stand out above the tips; try --pin"
     yield "    " + _resolution(blank.count_um, blank.step_um, "at the pitch circle")
 
 

@@ -8,15 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from gearmath.cli.common import (
-    MACHINE,
-    MEMBER,
-    SET,
-    SHEET,
-    bars,
-    member_of,
-    output,
-)
+from gearmath.cli.common import MACHINE, MEMBER, SET, SHEET, bars, member_of, of, output
 from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.cli.probe import nc_calibrate, probe
 from gearmath.cli.program_time import program_time
@@ -59,7 +51,7 @@ nc.add_command(program_time)
 @click.option("--finishing-stock", type=float, default=0.0, help="Stock that stays on the finished flanks, mm.")
 @click.option(
     "--blocks",
-    type=click.Choice(["g1", "poly"]),
+    type=of("blocks"),
     default="g1",
     show_default=True,
     help="Straight blocks, or polynomials where the cutter rolls (an option of the control).",

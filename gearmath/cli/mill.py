@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, NewFile, Number, about, bar, bars, member_of, output
+from gearmath.cli.common import FLANK_CSV, MACHINE, MEMBER, SET, NewFile, about, bar, bars, member_of, of, output
 from gearmath.errors import ComputationError, InputError, counted
 
 if TYPE_CHECKING:
@@ -34,14 +34,14 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--report-tolerance-um",
-    type=Number(0.01, 1000, "um"),
+    type=of("report_tolerance", um=True),
     help="Deviation on flank, fillet or root that the report counts as a fault. Left out: on flanks what the program "
     "states, on fillets and roots that or 1 um, whichever is more; 1 um where it states nothing.",
 )
 @click.option("--measured", is_flag=True, help="Clamp the member anew and measure it as the machine of --errors does.")
 @click.option(
     "--run",
-    type=click.IntRange(min=1),
+    type=of("number"),
     default=1,
     show_default=True,
     help="Number of the measurement of --measured: each has its own noise.",

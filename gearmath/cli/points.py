@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
-from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bars, echo_json, member_of, output
+from gearmath.cli.common import FLANK_CSV, JSON, MEMBER, SET_OPTION, about, bars, echo_json, member_of, of, output
 from gearmath.errors import InputError, counted
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ _T = TypeVar("_T")
 @click.option(
     "--flank",
     "sides",
-    type=click.Choice(["concave", "convex"]),
+    type=of("flank"),
     multiple=True,
     required=True,
     help="Flank of the points: once for all files, or once for each, in their order.",
@@ -40,7 +40,7 @@ _T = TypeVar("_T")
     show_default=True,
     help="Tooth of the points, counted from 0: once for all files, or once for each.",
 )
-@click.option("--unit", type=click.Choice(["mm", "inch"]), default="mm", show_default=True, help="Unit of the files.")
+@click.option("--unit", type=of("unit"), default="mm", show_default=True, help="Unit of the files.")
 @click.option(
     "--axis",
     type=click.Choice(["+x", "-x", "+y", "-y", "+z", "-z"]),
@@ -64,7 +64,7 @@ _T = TypeVar("_T")
 )
 @click.option(
     "--phase",
-    type=click.Choice(["common", "each", "kept"]),
+    type=of("phase"),
     default="common",
     show_default=True,
     help="Rotation about the axis: found for all files at once, for each by itself, or kept as it is.",

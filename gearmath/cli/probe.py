@@ -20,11 +20,11 @@ from gearmath.cli.common import (
     TOUCH_CSV,
     bars,
     member_of,
+    of,
     output,
 )
 from gearmath.cli.dialect import TARGET, dialect_of, write_configuration
 from gearmath.errors import InputError, counted
-from gearmath.specs.measurement import MOST_TOUCHES
 
 if TYPE_CHECKING:
     from gearmath.front.probing import ProbingProgram
@@ -59,9 +59,7 @@ _RAW = click.argument("raw", type=click.Path(path_type=Path), metavar="RAW.csv")
     show_default=True,
     help="With the pitch, probe the corners on eight teeth around: they determine the clamping.",
 )
-@click.option(
-    "--repeat", type=click.IntRange(1, MOST_TOUCHES), default=1, show_default=True, help="Touches of every point."
-)
+@click.option("--repeat", type=of("repeat"), default=1, show_default=True, help="Touches of every point.")
 @click.option("--errors", help="Simulated machine whose [fixture] and spindle the probe must clear.")
 @TARGET
 @SHEET
@@ -129,7 +127,7 @@ def probe_in_table(machine: MillingMachine, calibration: Calibration) -> dict[st
 @CALIBRATION
 @click.option(
     "--cycle",
-    type=click.Choice(["tip", "axes"]),
+    type=of("cycle"),
     default="tip",
     show_default=True,
     help="Ring and sphere on the table for the tip, or the sphere on the work side for the rotary axes.",

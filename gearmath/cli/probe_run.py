@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from gearmath.cli.common import MACHINE, MEMBER, bars, member_of, output
+from gearmath.cli.common import MACHINE, MEMBER, bars, member_of, of, output
 from gearmath.cli.probe import CALIBRATION
 from gearmath.errors import InputError, counted
 
@@ -30,7 +30,7 @@ from gearmath.errors import InputError, counted
 )
 @click.option(
     "--run",
-    type=click.IntRange(1, 99_999),
+    type=of("number"),
     default=1,
     show_default=True,
     help="Number of the run in the file; each has its own noise.",

@@ -17,9 +17,9 @@ from gearmath.cli.common import (
     MEMBER,
     REGISTER,
     SET_OPTION,
-    Number,
     bars,
     echo_json,
+    of,
     plot,
     save_plot,
     table,
@@ -29,7 +29,7 @@ from gearmath.errors import ComputationError, InputError
 
 SIGMA = click.option(
     "--sigma-um",
-    type=Number(0, 1000, "um", above=True),
+    type=of("sigma_um"),
     help="Standard uncertainty of every point, nothing in common, in place of u_um of the file.",
 )
 _BUNDLED = "measurement.toml"
@@ -49,9 +49,9 @@ MODEL = click.option(
 @MODEL
 @MACHINE
 @CALIBRATION
-@click.option("--draws", default=20_000, show_default=True, type=click.IntRange(1000, 10_000_000), help="Monte Carlo.")
-@click.option("--seed", default=0, show_default=True, type=click.IntRange(min=0), help="Of the draws.")
-@click.option("--workers", type=click.IntRange(1, 1024), help="Threads, or workers of the cluster.  [default: all]")
+@click.option("--draws", default=20_000, show_default=True, type=of("draws"), help="Monte Carlo.")
+@click.option("--seed", default=0, show_default=True, type=of("seed"), help="Of the draws.")
+@click.option("--workers", type=of("workers"), help="Threads, or workers of the cluster.  [default: all]")
 @click.option("--cluster", metavar="ADDRESS", help="Scheduler of a dask cluster that draws; needs the extra 'cluster'.")
 @click.option("--resume", type=click.Path(path_type=Path, dir_okay=False), help="Results file to keep and continue.")
 @plot("every figure in µm with its interval")

@@ -18,11 +18,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Anything, Content, Record
 from gearmath.control.interface import RunStart
 from gearmath.control.store_place import check_local
 from gearmath.control.store_run import StoredRun, now
 from gearmath.control.store_schema import prepare
 from gearmath.errors import ComputationError, InputError
+from gearmath.shown import Shown, Shows
 from gearmath.version import __version__
 
 #: Columns of the touch file before and after the cells that say where a point is, and these cells.
@@ -32,7 +35,7 @@ PLACES = (("member", "flank", "tooth", "row", "col"), ("target",))
 _PATIENCE = 10.0
 
 
-class MeasurementStore:
+class MeasurementStore(Shown):
     """A store that is open, by a connection that :func:`prepare` has set."""
 
     def __init__(self, connection: Any, path: Path) -> None:
@@ -40,7 +43,8 @@ class MeasurementStore:
         self._one_at_a_time = threading.Lock()
 
     @staticmethod
-    def open(path: Path, create: bool = True) -> MeasurementStore:
+    @checked_call
+    def open(path: str | Path, create: bool = True) -> MeasurementStore:
         """Open a store, by default made where there is none.
 
         Raises InputError for a file that is no store, for a store of a newer version, a network share, a place that
@@ -81,6 +85,7 @@ class MeasurementStore:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    @checked_call(start=Record("gearmath.control.interface", "RunStart", "a RunStart"))
     def begin_run(self, start: RunStart) -> StoredRun:
         """A new run, with all that it begins with. Raises InputError where that cannot be a run."""
         rows = _planned(start)
@@ -107,6 +112,7 @@ class MeasurementStore:
                 self.execute("INSERT INTO planned VALUES (?, ?, ?, ?, ?, ?, ?, ?)", run, *row)
         return StoredRun(self, run, start)
 
+    @checked_call
     def resume_run(self, run: int) -> StoredRun:
         """A run that is there and not complete, to go on with. Raises InputError where there is none such."""
         found = self.run(run)
@@ -117,6 +123,7 @@ class MeasurementStore:
             self.execute("INSERT INTO session VALUES (?, ?, ?, ?, ?, ?)", run, found.next_number("session"), *values)
         return found
 
+    @checked_call
     def run(self, run: int) -> StoredRun:
         """A run as it is kept, to be read. Raises InputError where there is none."""
         self._check(run)
@@ -147,6 +154,7 @@ class MeasurementStore:
         """All runs, the oldest first."""
         return [self.run(run) for (run,) in self.execute("SELECT run FROM run ORDER BY run")]
 
+    @checked_call
     def files(self, run: int) -> list[tuple[str, str, bytes, str]]:
         """Role (program, file), name, content and SHA-256 of what a run was begun with."""
         return self.execute(
@@ -155,6 +163,7 @@ class MeasurementStore:
             run,
         )
 
+    @checked_call(sql=Content(), values=Anything())
     def execute(self, sql: str, *values: Any) -> list[tuple]:
         """Run one statement with its values and give all rows. Raises ComputationError where SQLite refuses."""
         try:
@@ -162,6 +171,7 @@ class MeasurementStore:
         except sqlite3.Error as error:
             raise ComputationError(f"{self.path}: {error}") from error
 
+    @checked_call(failed=Content())
     @contextmanager
     def transaction(self, failed: str) -> Iterator[None]:
         """All or nothing, on the disk at the end. ``failed`` is what is said where SQLite, or the disk, refuses."""
@@ -196,6 +206,9 @@ class MeasurementStore:
         sha256 = hashlib.sha256(content).hexdigest()
         self.execute("INSERT OR IGNORE INTO file VALUES (?, ?)", sha256, content)
         self.execute("INSERT INTO run_file VALUES (?, ?, ?, ?)", run, role, name, sha256)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return "measurement store", [("file", self.path.name, "")]
 
 
 def _planned(start: RunStart) -> list[tuple]:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
 from gearmath.bevel.pair import load_pair
 from gearmath.control.run_start import CALIBRATION, MACHINE, SET
 from gearmath.control.store_run import StoredRun
@@ -16,6 +18,7 @@ from gearmath.control.store_touches import first_of, missing_points, touch_csv
 from gearmath.errors import InputError
 from gearmath.quality.evaluation.member import MemberEvaluation, evaluate_member
 from gearmath.quality.evaluation.touches import measured_member
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import BevelSet, Member
 from gearmath.specs.calibration import load_calibration
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv, write_flank_csv
@@ -26,8 +29,8 @@ from gearmath.specs.touch_csv import read_touch_csv
 MEASURED, FIGURES = "measured.csv", "evaluation.json"
 
 
-@dataclass(frozen=True)
-class EvaluatedRun:
+@dataclass(frozen=True, repr=False)
+class EvaluatedRun(Shown):
     """A run of a member, its measured points and its figures. ``file`` is as it was measured, before any correction."""
 
     run: StoredRun
@@ -40,7 +43,11 @@ class EvaluatedRun:
     def member(self) -> Member:
         return self.gear_set.member(self.name)
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return f"evaluated run {self.run.id}, {self.name}", [("points", len(self.file), "")]
 
+
+@checked_call(run=Record("gearmath.control.store_run", "StoredRun", "a run of a store, such as store.run(1)"))
 def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: None) -> EvaluatedRun:
     """Evaluate a run by what is stored with it, as ``gearmath touches`` and ``gearmath evaluate`` would.
 

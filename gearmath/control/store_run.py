@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearmath.control.interface import Alarm, RunStart, Touch
 from gearmath.errors import ComputationError, InputError
+from gearmath.shown import Shown, Shows
 from gearmath.version import __version__
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ CLOSED = "closed: "
 NOTE = 500
 
 
-class StoredRun:
+class StoredRun(Shown):
     """One run of a store: ``id`` is its number, ``start`` what it was begun with."""
 
     def __init__(self, store: MeasurementStore, run: int, start: RunStart) -> None:
@@ -150,6 +151,10 @@ class StoredRun:
 
     def _name(self, point: int) -> str:
         return f"{self.store.path}: run {self.id}, point {point}"
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        points = len(self.start.points)
+        return f"run {self.id} of {self.start.program}", [("control", self.start.control, ""), ("points", points, "")]
 
 
 def noted(note: str) -> str:

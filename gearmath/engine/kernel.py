@@ -9,10 +9,12 @@ import numpy as np
 
 from derivations.quantity import Quantity
 from gearmath.engine.run import runner
+from gearmath.errors import CallError, InputError
+from gearmath.shown import Shown, Shows
 
 
-@dataclass(frozen=True)
-class Kernel:
+@dataclass(frozen=True, repr=False)
+class Kernel(Shown):
     """A :class:`casadi.Function` with the meaning of its arguments: what ``export`` ships and others compose.
 
     Inputs and outputs of ``function`` have the names and shapes of ``inputs`` and ``outputs``, in this order.
@@ -26,12 +28,19 @@ class Kernel:
     requires: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        if not isinstance(self.function, ca.Function):
+            raise InputError(
+                f"function = {self.function!r}: must be a CasADi function; kernel(name) and lower make kernels"
+            )
+        for key in ("inputs", "outputs"):
+            if not all(isinstance(one, Quantity) for one in getattr(self, key) or ()):
+                raise InputError(f"{self.name}: {key}: must be a tuple of Quantity")
         for kind, quantities, names in (
             ("input", self.inputs, self.function.name_in()),
             ("output", self.outputs, self.function.name_out()),
         ):
             if [quantity.name for quantity in quantities] != names:
-                raise ValueError(
+                raise InputError(
                     f"{self.name}: {kind}s {names} of the function do not carry the names of its quantities"
                 )
 
@@ -50,19 +59,23 @@ class Kernel:
         such axis is the same for all points. Outputs have the axis in front if any argument has it. Arguments may be
         left out at the end where their quantities have a default.
         """
-        arrays = [np.asarray(argument, dtype=float) for argument in arguments]
+        try:
+            arrays = [np.asarray(argument, dtype=float) for argument in arguments]
+        except (TypeError, ValueError) as error:
+            names = ", ".join(quantity.name for quantity in self.inputs)
+            raise InputError(f"{self.name}: {error}; its arguments are arrays of numbers: {names}") from None
         left_out = self.inputs[len(arrays) :]
         if all(quantity.default is not None for quantity in left_out):
             arrays += [np.full(quantity.shape, quantity.default, dtype=float) for quantity in left_out]
         if len(arrays) != len(self.inputs):
-            raise TypeError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
+            raise CallError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
         many = [array.ndim > len(quantity.shape) for array, quantity in zip(arrays, self.inputs, strict=True)]
         is_batch = any(many)
         n = max((len(array) for array, is_many in zip(arrays, many, strict=True) if is_many), default=1)
         flats = []
         for array, is_many, quantity in zip(arrays, many, self.inputs, strict=True):
             if array.shape != (*((n,) if is_many else ()), *quantity.shape):
-                raise ValueError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
+                raise InputError(f"{self.name}: {quantity.name} has shape {array.shape}, expected {quantity.shape}")
             flats.append(_by_columns(array, n if is_many else 1, quantity))
         if not any(many):
             many[:] = [True] * len(many)
@@ -76,6 +89,10 @@ class Kernel:
     def expand(self) -> Kernel:
         """The same kernel as one flat graph of scalar operations."""
         return Kernel(self.function.expand(), self.description, self.inputs, self.outputs, self.source, self.requires)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        given, made = ((q.name for q in quantities) for quantities in (self.inputs, self.outputs))
+        return self.name, [("of", ", ".join(given), ""), ("gives", ", ".join(made), ""), ("what", self.description, "")]
 
 
 def _by_columns(array: np.ndarray, n: int, quantity: Quantity) -> np.ndarray:

@@ -15,17 +15,21 @@ import numpy as np
 from gearmath.errors import ComputationError, InputError
 from gearmath.exchange.spline import Patch
 from gearmath.files import write_bytes
+from gearmath.shown import Shown, Shows
 
 #: Borders that belong together lie this close [mm]; they are the same but for rounding.
 _SAME = 1e-6
 
 
-@dataclass(frozen=True)
-class WrittenSolid:
+@dataclass(frozen=True, repr=False)
+class WrittenSolid(Shown):
     """A closed solid: how many faces it has, and its volume [mm³]."""
 
     faces: int
     volume: float
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return "closed solid", [("faces", self.faces, ""), ("volume", self.volume, "mm³")]
 
 
 def write_step(

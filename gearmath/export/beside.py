@@ -9,9 +9,9 @@ from fractions import Fraction
 from gearmath.export.netlist import Netlist
 from gearmath.specs.hobbing import HobbingMachine
 
-#: Junction of an LM7805 at most, room [degrees C], and thermal resistance [K/W]: to air without a heat sink, to the
-#: case with its pad.
-_HOT, ROOM, _BARE, _PAD = 125.0, 40.0, 65.0, 6.0
+#: Junction of an LM7805, 25 below the most that it stands, and room [degrees C]; thermal resistance [K/W]: to air
+#: without a heat sink, to the case with its pad.
+_HOT, ROOM, _BARE, _PAD = 100.0, 40.0, 65.0, 6.0
 #: What it stands without a heat sink [W].
 BARE_WATTS = (_HOT - ROOM) / _BARE
 #: Voltage of the supply that the parts list asks for.
@@ -27,8 +27,9 @@ def beside(machine: HobbingMachine, found: Netlist) -> Iterator[tuple[str, str, 
     yield "KM1", "contactor with an auxiliary contact 13-14, coil for the control circuit", "power of the spindle"
     yield "F1", "fuse 1 A, with holder", "control circuit of KM1"
     yield "S3, S4", "push buttons: stop, normally closed, red; start, normally open, green", "control circuit of KM1"
+    yield "-", "switch in the feed of G2, if it has none of its own", "power of the motor, by itself"
     yield "XU1", f"2 socket strips of {_ROWS[machine.board]} pins, 2.54 mm", "U1, which is flashed out of them"
-    for name, pins in _chips(found):
+    for name, pins in socketed(found):
         yield f"X{name}", f"socket DIP-{pins}", name
     if (sink := heat_sink(found.current, _SUPPLY)) is not None:
         yield "HS2", f"heat sink for TO-220 of at most {sink} K/W, with pad and screw", "U2"
@@ -61,7 +62,8 @@ def heat_sink(current: int, volts: float) -> int | None:
     return int((_HOT - ROOM) / watts - _PAD) if watts > BARE_WATTS and (_HOT - ROOM) / watts > _PAD else None
 
 
-def _chips(found: Netlist) -> Iterator[tuple[str, str]]:
+def socketed(found: Netlist) -> Iterator[tuple[str, str]]:
+    """Chips that go into sockets, and their pins."""
     for part in found.parts.values():
         if match := re.search(r"\bDIP-(\d+)", part.what):
             yield part.name, match[1]

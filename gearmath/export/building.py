@@ -23,12 +23,14 @@ def order(machine: HobbingMachine) -> Iterator[str]:
             "Parts: buy them, every one is in the list.",
             "Wiring: solder by the diagram, tick off every connection, measure. U1 and the chips are not in their "
             "sockets yet: with 9 V on, that of U1 must have 4.8 to 5.2 V from Vin (+) to GND.",
-            "Encoder and decoder: the resistor of the LS7184N, the mode jumper, the output of your encoder."
+            "Encoder and decoder: the mode jumper, the output of your encoder, and a trimmer in the place of RB1, "
+            "which is set later."
             if machine.encoder.has_ls7184
             else "Encoder and decoder: the output of your encoder.",
             "Step motor driver: switches and current; motor power stays off.",
-            "Flashing: U1 by USB alone, out of its socket; then into it.",
-            "Commissioning: display, stops, encoder, motor, directions, one after the other.",
+            "Flashing: U1 by USB alone, out of its socket; then U1 and the chips go into their sockets.",
+            "Commissioning: display, stops, encoder, motor, directions, one after the other. Nothing is measured on a "
+            "turning machine before that.",
             f"The first cut, and what the display shows meanwhile: Using it. What stops the {work}: Faults.",
         ),
         numbered=True,
@@ -93,8 +95,9 @@ def encoder_outputs(machine: HobbingMachine) -> Iterator[str]:
     ]
     yield from table(("output", "in front of the input"), rows)
     yield from paragraph(
-        "An opto-coupler turns the levels round. For A and B that changes nothing; for Z the machine file then says "
-        '`index_active = "low"` under `[encoder]`.'
+        "An opto-coupler turns the levels round. For A and B that changes nothing; for Z write the other "
+        "`index_active` under `[encoder]`. The same where Z of an encoder with open collectors is low on its mark: "
+        "makes differ, and the index test below finds it."
     )
     yield from bullets(
         (

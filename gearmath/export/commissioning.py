@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from fractions import Fraction
 
+from gearmath.export.full_rate import full_rate_of_a_gear, full_rate_of_a_thread
 from gearmath.export.markdown import bullets
+from gearmath.export.reservations import SMALL, fewest_teeth, trial_teeth
 from gearmath.gearbox.job import TRIP
 from gearmath.specs.hobbing import HobbingMachine
-from gearmath.specs.motion_limits import TRIAL_TEETH
-
-#: Steps that a step motor loses at the least, in full steps: it falls into the next place of the same phase.
-_SLIP = 4
-#: Most starts of a thread.
-_STARTS = 10
-#: A pinion that is cut on such machines.
-_SMALL = 6
+from gearmath.specs.motion_limits import most_acceleration
 
 
 def commissioning(machine: HobbingMachine) -> Iterator[str]:
@@ -44,16 +38,18 @@ def _standing(machine: HobbingMachine) -> Iterator[str]:
             "contact and wire are not normally closed to ground; if it stays, the wire is broken."
         )
     if pins.healthy is not None:
-        lets_go = "In that state" if pins.estop is not None else f"With the wire at pin {pins.healthy} pulled off"
         yield (
-            f"{lets_go} K1 must have let go (a multimeter shows no connection from COM to NO), and the {leading} must "
-            "not start when S4 is pressed."
+            "K1, with a multimeter at its COM and NO: joined while the menu is shown. Pull the wire at pin "
+            f"{pins.healthy} off: not joined any more. Leave it off, release every stop, and switch the power of the "
+            f"spindle on, nothing clamped, hands off: S4 must not start the {leading}. Put the wire back, hold the "
+            "button for a second where a fault is shown: S4 must start it now. Pull the wire off while it runs "
+            "empty: it must stop. Then S3, and the power of the spindle off again."
         )
     if pins.alarm is not None:
         how = "pull the wire at" if machine.driver.alarm_active == "high" else "join to GND"
         yield (
-            f"The alarm of the driver: {how} pin {pins.alarm}, and `FAULT motor driver` must come; with the driver "
-            "wired and on it must go after a hold of the button. If it stays, write the other level as `alarm_active`."
+            f"The input for the alarm of the driver: {how} pin {pins.alarm}, and `FAULT motor driver` must come. Put "
+            "it back as it was. (A driver without power may report an alarm, too: the driver itself is tried below.)"
         )
     lines = "the MODE jumper or the number of lines" if machine.encoder.has_ls7184 else "the number of lines"
     yield (
@@ -62,6 +58,42 @@ def _standing(machine: HobbingMachine) -> Iterator[str]:
         f"more or less. `decoder mode?` means {lines}; `OK, but backwards` asks for channels A and B to be exchanged, "
         "or `invert = true` under `[encoder]`."
     )
+    if machine.encoder.has_ls7184:
+        yield _output_pulse(machine)
+
+
+def _output_pulse(machine: HobbingMachine) -> str:
+    """How the trimmer in the place of RB1 is set."""
+    rate = machine.max_edge_rate
+    low, high = (5 * (1 - rate * pulse * 1e-6) for pulse in (2.0, 1.0))
+    other = " RB2 at U4 gets the same value." if machine.feed is not None else ""
+    return (
+        "A trimmer in the place of RB1: with an oscilloscope at pin 8 (CLK) of U3, ground at pin 3, turn the hob by "
+        "hand, and the trimmer down until each pulse, which is low, lasts 1 us to 2 us. With a multimeter alone, DC "
+        "volts at pin 8 against pin 3: 5.00 V while the encoder stands. Power of the spindle on, that of the motor "
+        f"off, and no job: at {machine.limits.hob_rpm:g} rpm, {rate} edges/s, the mean is {high:.2f} V for pulses of "
+        f"1 us and {low:.2f} V for 2 us; turn the trimmer down until it lies between. At half the speed it must have "
+        "fallen half as far from 5.00 V: if it has fallen further, edges are lost at the full speed, and the pulse "
+        "is still too long. Everything off and U3 out of its socket, measure trimmer and resistor together, and "
+        f"solder the nearest fixed resistor in.{other}"
+    ).replace("the hob by hand", f"the {_leading(machine)} by hand")
+
+
+def _alarm_of_the_driver(machine: HobbingMachine, free: str) -> str:
+    if machine.driver.alarm_active == "high":
+        tried = (
+            "Then pull the cable of the alarm off at the driver: the fault must come. Motor power off, the cable back."
+        )
+    else:
+        tried = (
+            "Make the driver report an alarm once, as its manual says (most do so where the motor is unplugged, "
+            "without power, and power comes on then): the fault must come. Motor power off, the motor back."
+        )
+    return (
+        f"Motor power on, {free}. Where `FAULT motor driver` is shown, hold the button for a second: it must go. If "
+        "it stays although the lamp of the driver shows no alarm, write the other level as `alarm_active`, export "
+        f"and flash again. {tried}"
+    )
 
 
 def _moving(machine: HobbingMachine) -> Iterator[str]:
@@ -69,23 +101,25 @@ def _moving(machine: HobbingMachine) -> Iterator[str]:
     lathe, leading, limits = machine.profile == "lathe", _leading(machine), machine.limits
     driven, free = ("lead screw", "half nut open") if lathe else ("table", "nothing clamped, the hob clear of it")
     seconds = float(machine.motor_steps) / machine.move_max_rate + machine.move_max_rate / limits.acceleration_hz_per_s
-    stop = "the emergency stop" if machine.pins.estop is not None else "the switch of G2, there is no emergency stop"
+    if machine.pins.alarm is not None:
+        yield _alarm_of_the_driver(machine, free)
     yield (
-        f"Motor power on, {free}. Have a hand on {stop}. `test one turn`: draw a line across "
+        f"Motor power on, {free}. Have a hand on the switch of G2: neither emergency stop nor board takes the power of "
+        f"the motor away. `test one turn`: draw a line across "
         f"{driven} and frame, answer yes; in about {seconds:.0f} s {round(machine.motor_steps)} "
         f"steps must bring the line back exactly. If not, full steps, "
         f"microsteps{' or belt' if lathe else ', belt or worm'} of the machine file are not those of the machine: "
         "where it makes half a turn the driver makes twice the microsteps that the file says, where two turns, half."
     )
     # from rest to twice the acceleration the motor swings to 3.5 times it; from braking to full acceleration to 2.5
-    twice = min(2.0 * limits.acceleration_hz_per_s, 1e7)
+    twice = min(2.0 * limits.acceleration_hz_per_s, most_acceleration(machine))
     reached = int(min(machine.max_step_rate, math.sqrt(twice * float(machine.motor_steps))))
     yield (
-        f"What the motor carries: with `acceleration_hz_per_s = {twice:g}` and `move_rate_hz = {reached}` in a copy of "
-        "the machine file, exported and flashed, repeat `test one turn` ten times; the line must come back each time. "
-        "Then flash this folder again. A motor that passes has the reserve that it needs where the "
-        f"{leading} stops at once while it is being caught up. If it loses steps, halve `acceleration_hz_per_s` of the "
-        "machine file, export again, and repeat."
+        f"What the motor carries: with `acceleration_hz_per_s = {twice:g}` and `move_rate_hz = {reached}` in a copy "
+        "of the machine file, exported to another folder and flashed (9 V off, U1 out of its socket each time), "
+        "repeat `test one turn` ten times; the line must come back each time. Then flash this folder again. A motor "
+        f"that passes has the reserve that it needs where the {leading} stops at once while it is being caught up. "
+        "If it loses steps, halve `acceleration_hz_per_s` of the machine file, export again, and repeat."
     )
 
 
@@ -93,20 +127,22 @@ def _together(machine: HobbingMachine) -> Iterator[str]:
     """What is tried with both sides turning."""
     lathe, leading = machine.profile == "lathe", _leading(machine)
     yield _direction_of_a_thread() if lathe else _direction_of_a_gear(machine)
-    yield _full_rate_of_a_thread(machine) if lathe else _full_rate_of_a_gear(machine)
+    yield full_rate_of_a_thread(machine) if lathe else full_rate_of_a_gear(machine)
     if machine.pins.index is not None:
         turning = leading if machine.encoder.belt == 1 else "encoder, which are not those of the " + leading
         yield (
-            f"Index: in the same job let the {leading} run for a minute at about 100 rpm. `Checked` on the third page "
-            f"(two detents) must count every turn of the {turning}. If it stays at 0, Z of the encoder does not reach "
-            f"pin {machine.pins.index}; if `FAULT hob encoder` comes, edges are lost: look at cable, shield, coupling."
+            f"Index: in the same job let the {leading} run for a minute at about "
+            f"{min(100.0, machine.limits.hob_rpm / 2):g} rpm. `Checked` on the third page (two detents) must count "
+            f"every turn of the {turning}. If it stays at 0, Z of the encoder does not reach pin "
+            f"{machine.pins.index}, or its pulse is the other way round: write the other `index_active`; if `FAULT "
+            "hob encoder` comes, edges are lost: look at cable, shield, coupling."
         )
     if machine.feed is not None:
         yield _direction_of_the_feed(machine)
     trial = (
         "a thread in scrap, and measure it over ten pitches"
         if lathe
-        else f"a gear of {TRIAL_TEETH} teeth in wax, and count them"
+        else f"a gear of {trial_teeth(machine)} teeth in wax, and count them"
     )
     yield f"Cut air: a whole pass with the tool 5 mm clear of the blank. Then cut {trial}."
 
@@ -122,10 +158,11 @@ def _direction_of_a_thread() -> str:
 
 def _direction_of_a_gear(machine: HobbingMachine) -> str:
     hand = machine.hob_hand
-    turns = TRIAL_TEETH // 4
+    teeth = trial_teeth(machine)
+    turns = teeth // 4
     return (
-        f"Direction: job of {TRIAL_TEETH} teeth with a {hand}-hand hob, no helix, `Start?` yes. Turn the hob by hand "
-        f"{turns} turns in its working direction: the table must go {turns * 360 * machine.hob_starts / TRIAL_TEETH:g} "
+        f"Direction: job of {teeth} teeth with a {hand}-hand hob, no helix, `Start?` yes. Turn the hob by hand "
+        f"{turns} turns in its working direction: the table must go {turns * 360 * machine.hob_starts / teeth:g} "
         f"degrees. Which way: hold the {hand} hand beside the hob, its bent fingers the way the hob turns; its thumb "
         "lies along the axis of the hob. The side of the table next to the hob must go the other way than the thumb "
         "points. If it goes with the thumb, change `invert_direction` of the driver and export again."
@@ -147,74 +184,17 @@ def _direction_of_the_feed(machine: HobbingMachine) -> str:
     )
 
 
-def _full_rate_of_a_gear(machine: HobbingMachine) -> str:
-    """The firmware takes the fewest teeth whose steps keep the rate up to the highest speed of the hob."""
-    teeth = _fewest_teeth(machine)
-    rate = float(Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts / teeth)
-    return (
-        f"The motor at its full rate: job of {teeth} {'teeth' if teeth > 1 else 'tooth'}, no blank, a line across "
-        f"table and frame, `Start?` yes with the hob at rest. Run the hob up to {machine.limits.hob_rpm:g} rpm: the "
-        f"motor makes {rate:.0f} steps/s then, of `step_rate_hz = {machine.max_step_rate}`. "
-        f"{_up(machine, rate, 'hob')} Leave it there for a minute, switch the hob off, and turn it on by "
-        "hand until the second page shows `Table` "
-        f"0.00 deg: the line must be back. {_slip(machine, 'table')}"
-    )
-
-
-def _fewest_teeth(machine: HobbingMachine) -> int:
-    """The fewest teeth that the firmware takes: they keep the rate up to the speed at which it trips."""
-    at_one = Fraction(machine.limits.hob_rpm) / 60 * machine.motor_steps * machine.hob_starts * TRIP
-    return max(1, math.ceil(at_one / machine.max_step_rate))
-
-
 def _pinions(machine: HobbingMachine) -> Iterator[str]:
     """What must be changed for gears of fewer teeth."""
-    teeth = _fewest_teeth(machine)
-    if teeth <= _SMALL:
+    teeth = fewest_teeth(machine)
+    if teeth <= SMALL:
         return
-    rpm = math.floor(machine.max_step_rate * _SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
+    rpm = math.floor(machine.max_step_rate * SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
     yield (
         f"With {machine.hob_starts} start{'s' * (machine.hob_starts > 1)} of the hob the firmware takes {teeth} teeth "
         f"and more: at {machine.limits.hob_rpm:g} rpm fewer need more than {machine.max_step_rate} steps/s, and the "
-        f"start says `too many steps/s` and `Set limit`. Write that limit into the machine file, for {_SMALL} teeth "
+        f"start says `too many steps/s` and `Set limit`. Write that limit into the machine file, for {SMALL} teeth "
         f"`hob_rpm = {rpm}`, export again, and do not run the hob faster."
-    )
-
-
-def _full_rate_of_a_thread(machine: HobbingMachine) -> str:
-    """A lead of whole turns of the screw per turn of the spindle, as few as reach the rate."""
-    most = Fraction(machine.max_step_rate) * 60 / TRIP  # steps a minute
-    starts = min(_STARTS, max(1, math.ceil(most / machine.motor_steps / Fraction(machine.limits.hob_rpm))))
-    rpm = math.floor(min(Fraction(machine.limits.hob_rpm), most / machine.motor_steps / starts))
-    rate = float(machine.motor_steps * starts * rpm / 60)
-    pitch = machine.lead_screw_pitch
-    return (
-        f"The motor at its full rate: half nut open, job of a right-hand thread with the pitch of the lead screw, "
-        f"{float(pitch):.6g} mm or {float(Fraction(127, 5) / pitch):.6g} per inch, {starts} start{'s' * (starts > 1)}. "
-        f"Bring a mark on the spindle and one on the lead screw up, `Start?` yes with the spindle at rest. Run it up "
-        f"to {rpm} rpm: the motor makes {rate:.0f} steps/s then, of `step_rate_hz = {machine.max_step_rate}`. "
-        f"{_up(machine, rate, 'spindle')} Leave it there for a minute, switch it off, and turn the spindle on by hand "
-        f"to its mark: that of the lead screw must be up too. {_slip(machine, 'lead screw')}"
-    )
-
-
-def _up(machine: HobbingMachine, rate: float, leading: str) -> str:
-    seconds = rate / machine.limits.acceleration_hz_per_s
-    return (
-        f"Let the {leading} take {seconds:.1f} s or more to that speed, by its inverter or in steps of speed; one that "
-        "starts quicker runs away from the motor, and `FAULT table lags` comes."
-    )
-
-
-def _slip(machine: HobbingMachine, driven: str) -> str:
-    """What lost steps look like, and what to do."""
-    lower = "lower `step_rate_hz` of the machine file by a quarter, export again, and repeat as its README says."
-    if machine.drive.pulses is not None or machine.driver.timing.closed_loop:
-        return f"If it is not, or the drive reports an alarm, {lower}"
-    degrees = _SLIP * 360 * (machine.drive.microsteps or 1) / float(machine.motor_steps)
-    return (
-        f"A step motor slips by {_SLIP} full steps at the least, {degrees:.2g} degrees of the {driven}, "
-        f"{2 * math.pi * 50 * degrees / 360:.2g} mm at a radius of 50 mm. If it has slipped or stalled, {lower}"
     )
 
 
@@ -239,8 +219,8 @@ def _leading(machine: HobbingMachine) -> str:
 _GEAR = (
     "Take brass or a hard plastic, 30 to 60 teeth, and a blank of the diameter that the page `Blank` shows, on an "
     "arbor that runs true: what the blank runs out, its teeth run out too.",
-    "A hob of 25 mm turns at 600 to 800 rpm in aluminum, at 300 to 350 rpm in steel; one of 50 mm at half of that, "
-    "and so on. Cutting oil for steel and aluminum, brass dry.",
+    "Within its limit a hob of 25 mm turns at 600 to 800 rpm in aluminum, at 300 to 350 rpm in steel; one of 50 mm "
+    "at half of that, and so on. Cutting oil for steel and aluminum, brass dry.",
     "Swivel the hob head by the lead angle of the hob (stamped on it), for helical teeth by helix less lead angle "
     "where both have one hand, by their sum where not. Which way: so that the thread of the hob, on the side of the "
     "blank, lies along the teeth to be cut; for a spur gear that is along the axis of the blank.",
@@ -249,8 +229,10 @@ _GEAR = (
     "Feed 0.1 to 0.3 mm per turn of the table for small modules. Conventional cut where the feed has play, climb cut "
     "where it has none. Climb is where the teeth of the hob, as they cut, move against the way in which the hob is "
     "fed.",
-    "Start hob and gearbox clear of the blank, wait for `In phase`, then feed in. At the end feed clear of the blank "
-    "before you answer `Stop?`.",
+    "Clear of the blank switch the hob on, answer `Start?` when it has its speed, wait for `In phase`, then feed in. "
+    "At the end feed clear of the blank, answer `Stop?`, and only then switch the hob off. So it does not matter how "
+    "quickly the hob starts and stops. A job that is too fast to be engaged (`gearmath gearbox plan` says so) starts "
+    "with the hob at rest, and the hob must take as long as the run-up of that plan, to start and to stop.",
     "Count the teeth, and measure the span that `gearmath gearbox plan` gives. Too thick by s: cut deeper by 1.46 s "
     "for a hob of 20 degrees, by 2.00 s for one of 14.5, which is s/(2 sin of the pressure angle).",
 )

@@ -42,6 +42,7 @@ def _ways(machine: HobbingMachine, found: Netlist) -> Iterator[str]:
             "and up the right one."
         )
     yield "U2: its print towards you, legs down, they are 1 IN, 2 GND, 3 OUT from left to right."
+    yield "G1: a meter shows which of its wires is +; a round plug has + inside, as a rule."
     yield "Electrolytic capacitors: the stripe is on the side of -, the longer leg is +. 100 nF and resistors: any way."
     if "D1" in found.parts:
         yield "Diodes: the ring is the cathode."
@@ -67,7 +68,9 @@ def _ways(machine: HobbingMachine, found: Netlist) -> Iterator[str]:
             ""
             if servo
             else " M1: between the two wires of a winding a meter shows some ohms; which winding is A, and which of "
-            "its ends is +, does not matter, since the direction is set later."
+            "its ends is +, does not matter, since the direction is set later. A motor of 6 wires: the two ends of "
+            "each winding, the taps in their middle open, each taped by itself, at 0.7 of the current for half a "
+            "winding. Of 8 wires: two halves of a winding in parallel, by the drawing of the motor, for speed."
         )
     )
     if machine.driver.timing.closed_loop and not servo:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import astuple
 
+from gearmath.export.beside import socketed
 from gearmath.export.building import chain, encoder_outputs, order, parts_chapter, scope, switches
 from gearmath.export.commissioning import commissioning, first_cut
 from gearmath.export.connecting import connections, underside
@@ -12,6 +13,8 @@ from gearmath.export.header import versions
 from gearmath.export.machine_header import pin_sentence
 from gearmath.export.markdown import bullets, escaped, paragraph, table
 from gearmath.export.memory import memory
+from gearmath.export.netlist import netlist
+from gearmath.export.reservations import reservations
 from gearmath.export.screens import faults, screens
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -74,6 +77,9 @@ def _head(machine: HobbingMachine, sketch: str) -> Iterator[str]:
         "All of it counts in whole numbers, without a floating-point constant, and the motor's place is the whole step "
         "nearest to the exact one, however long it runs and however often it reverses."
     )
+    if said := reservations(machine):
+        yield from paragraph("Know before you build it:")
+        yield from bullets(said)
     yield from order(machine)
 
 
@@ -94,10 +100,16 @@ def _flashing(machine: HobbingMachine, sketch: str) -> Iterator[str]:
         f"Tools, Board: {machine.hardware.title}. The sketch refuses to compile for another one.",
         f"Tools, CPU Speed: {speed}. Tools, Optimize: Faster.",
         "U1 by USB alone, out of its socket. Sketch, Upload; if the loader waits, press the button on U1.",
-        "Unplug the USB cable, then put U1 into its socket, the way round in which its Vin meets +5 V and its GND 0 V.",
+        "Unplug the USB cable, 9 V off. Put U1 into its socket, the way round in which its Vin meets +5 V and its GND "
+        f"0 V{_chips_too(machine)}.",
     ]
     yield from bullets(steps, numbered=True)
     yield from memory(machine)
+
+
+def _chips_too(machine: HobbingMachine) -> str:
+    names = [name for name, _ in socketed(netlist(machine))]
+    return f", and {', '.join(names)} into theirs, pin 1 to pin 1" if names else ""
 
 
 def _pins(machine: HobbingMachine) -> Iterator[str]:
@@ -161,24 +173,14 @@ def _bias(machine: HobbingMachine) -> Iterator[str]:
     yield from paragraph(
         "RBIAS, pin 1, sets the length of the output pulse, and the chip is blind while it lasts. **The value of "
         f"{name} is not confirmed: take it from the chart of the data sheet of your LS7184N, for a pulse of 1 us to 2 "
-        "us, or find it as below.** Tables for the older LS7084 do not hold. At this machine's "
+        "us, or find it in Commissioning.** Tables for the older LS7084 do not hold. At this machine's "
         f"{machine.max_edge_rate} edges/s the pulse must stay below {longest} ns, since the edges of a real encoder "
         f"come up to {_UNEVEN} times closer than on the average."
     )
-    rate = machine.max_edge_rate
-    low, high = (5000 * (1 - rate * pulse * 1e-6) for pulse in (2.0, 1.0))
-    yield from bullets(
-        (
-            "With what: a trimmer of 1 MOhm and a resistor of 47 kOhm in series in the place of RB1, the trimmer at "
-            "its largest. A larger resistance makes a longer pulse.",
-            "With an oscilloscope at pin 8 (CLK), ground at pin 3: turn the encoder, and turn the trimmer down until "
-            "each pulse, which is low, lasts 1 us to 2 us.",
-            "With a multimeter alone, DC volts at pin 8 against pin 3: 5.00 V while the encoder stands. At "
-            f"{machine.limits.hob_rpm:g} rpm, {rate} edges/s, the mean is {high / 1000:.2f} V for pulses of 1 us and "
-            f"{low / 1000:.2f} V for 2 us (from 5.00 V). At half the speed it must have fallen half as far: if it has "
-            "fallen further than that, edges are lost at the full speed, and the pulse is still too long.",
-            "Measure trimmer and resistor together, and solder the nearest fixed resistor in.",
-        )
+    yield from paragraph(
+        "Where you have no value from the chart, solder a trimmer of 1 MOhm and a resistor of 47 kOhm in series in "
+        f"the place of {name}, the trimmer at its largest. A larger resistance makes a longer pulse; turned by hand "
+        "the encoder counts with any."
     )
 
 
@@ -221,10 +223,10 @@ def _advice(machine: HobbingMachine) -> Iterator[str]:
     if machine.pins.healthy is not None:
         yield (
             "The fail-safe pin is a square wave of 1 kHz, which only a working program and a working interrupt make. "
-            "The charge pump C3, D1, D2, C4 turns it into base current of the last transistor, and K1 falls within "
-            "50 ms after the wave ends, at whatever level: a fault, a reset, a hung processor or a broken wire stops "
-            "the machine. Only your press on the power-up page, a start, or the acknowledgement of a fault lets it go "
-            "on."
+            "The charge pump of RC3, C3, D1, D2 and C4 turns it into base current of the last transistor, and K1 "
+            "falls within 50 ms after the wave ends, at whatever level: a fault, a reset, a hung processor or a "
+            "broken wire stops the machine. Only your press on the power-up page, a start, or the acknowledgement of "
+            "a fault lets it go on."
         )
     else:
         yield "No fail-safe output is wired: after a fault **you** must stop the machine. The fault page says so."

@@ -64,9 +64,14 @@ def netlist(machine: HobbingMachine) -> Netlist:
     return found
 
 
+def fuse_milliamperes(current: int) -> int:
+    """Fuse [mA] for parts that take so many mA."""
+    return next(one for one in _FUSES if one >= _SPARE * current)
+
+
 def supply_amperes(current: int) -> float:
-    """Current [A] of the supply for parts that take so many mA: half more, in tenths."""
-    return -(-current * 15 // 1000) / 10
+    """Current [A] of the supply for parts that take so many mA: half more than their fuse, which must blow first."""
+    return -(-fuse_milliamperes(current) * 15 // 1000) / 10
 
 
 def _board(pin: int) -> End:
@@ -103,8 +108,9 @@ def _supply(found: Netlist, machine: HobbingMachine) -> None:
 def _supplies(found: Netlist) -> None:
     """Supply of the circuit and its fuse, for the current of all parts."""
     found.part("G1", f"supply, 9 V DC, {supply_amperes(found.current):.1f} A or more", "the circuit, by U2")
-    fuse = next(one for one in _FUSES if one >= _SPARE * found.current)
-    found.part("F2", f"fuse {fuse} mA slow, 5 x 20 mm, with holder", "between + of G1 and U2")
+    found.part(
+        "F2", f"fuse {fuse_milliamperes(found.current)} mA slow, 5 x 20 mm, with holder", "between + of G1 and U2"
+    )
     found.join("9 V", ("G1", "+"), ("F2", "1"))
     found.join("supply", ("F2", "2"))
     found.join(GROUND, ("G1", "-"))
@@ -261,13 +267,15 @@ def _transistor(found: Netlist, k: int, name: str, source: End, load: End, curre
 
 
 def _pump(found: Netlist, pin: int, k: int) -> None:
+    found.part("RC3", "100 Ohm", f"charge pump: limits the current of pin {pin} as C3 is charged")
     found.part("C3", "2.2 uF, ceramic", "charge pump: only a square wave of the board holds K1")
     found.part("C4", "10 uF 25 V, electrolytic", "charge pump, its store")
     for name in ("D1", "D2"):
         found.part(name, "1N5819", "charge pump")
     found.part("K1", "5 V relay of at most 50 mA, contact for the coil of the contactor", "lets the motor run", 50)
     found.part("D3", "1N4148", "across the coil of K1, its ring to +5 V")
-    found.join("wave", _board(pin), ("C3", "1"))
+    found.join("wave", _board(pin), ("RC3", "1"))
+    found.join("limited wave", ("RC3", "2"), ("C3", "1"))
     found.join("pump", ("C3", "2"), ("D1", "cathode"), ("D2", "anode"))
     found.join("pumped", ("D2", "cathode"), ("C4", "+"))
     found.join(GROUND, ("D1", "anode"), ("C4", "-"))

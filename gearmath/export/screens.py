@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from gearmath.export.display_words import words
 from gearmath.export.markdown import bullets, paragraph, table
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -33,7 +34,10 @@ _JOB_OF_A_THREAD: tuple[Row, ...] = (
     ("Edges", "... for so many counts of the spindle encoder"),
 )
 _RUN_OF_A_GEAR: tuple[Row, ...] = (
-    ("Hob max", "highest speed of the hob for this job: its own limit, or what the motor's steps allow"),
+    (
+        "Hob max",
+        "the highest speed of the hob in this job: its limit, or that of the motor's steps where it is lower",
+    ),
     ("Hob", "its speed now, in turns per minute"),
     ("Table", "its speed now (first page), its angle since the start of the job (second page)"),
     ("In phase: lag", "hob and table are in mesh; motor steps that wait, 0 or 1 is usual"),
@@ -43,7 +47,10 @@ _RUN_OF_A_GEAR: tuple[Row, ...] = (
 )
 _RUN_OF_A_THREAD: tuple[Row, ...] = (
     ("Right, Left, Feed", "first line: hand and pitch of the thread, or the feed"),
-    ("Max speed", "highest speed of the spindle for this job: its own limit, or what the motor's steps allow"),
+    (
+        "Max speed",
+        "the highest speed of the spindle in this job: its limit, or that of the motor's steps where it is lower",
+    ),
     ("Spindle", "its speed now, in turns per minute"),
     ("Thread start", "number of the start that is cut"),
     ("In phase: lag", "spindle and carriage are in mesh; motor steps that wait, 0 or 1 is usual"),
@@ -91,6 +98,9 @@ def screens(machine: HobbingMachine) -> Iterator[str]:
     yield "### What every number means"
     yield ""
     yield from table(("label", "meaning"), _quoted(_rows(machine)))
+    yield "### What it says"
+    yield ""
+    yield from table(("words", "meaning"), list(words(machine)))
 
 
 def _helps(machine: HobbingMachine) -> Iterator[str]:

@@ -43,6 +43,15 @@ def teensy_files(machine: HobbingMachine, sketch: str = "gearbox") -> dict[str, 
     return files
 
 
+def machine_of(folder: Path) -> str | None:
+    """The name of the machine that a sketch folder was written for, or None where there is none."""
+    try:
+        found = re.search(r'^#define GM_NAME "(.*)"$', (folder / "gm_machine.h").read_text("utf-8"), re.MULTILINE)
+    except (OSError, UnicodeDecodeError):
+        return None
+    return None if found is None else found[1]
+
+
 def export_teensy(machine: HobbingMachine, folder: Path) -> tuple[str, ...]:
     """Write the folder and return the names of its files. Raises InputError where it holds other files."""
     files = teensy_files(machine, Path(os.path.abspath(folder)).name)

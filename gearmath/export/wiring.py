@@ -243,23 +243,25 @@ def _motor(drawing: Drawing, machine: HobbingMachine) -> float:
 
 def _pump(drawing: Drawing, y: float, pin: int, transistor: str) -> None:
     """Charge pump and transistor of the fail-safe relay: direct current of the pin, high or low, does not pass C3."""
-    node, store = _BOARD[1] + 1.8, _BOARD[1] + 3.4
+    wave, node, store = _BOARD[1] + 1.6, _BOARD[1] + 2.9, _BOARD[1] + 4.3
     text(drawing, (_BOARD[1] - 0.2, y), f"pin {pin}", align="right")
-    drawing.add(elements.Capacitor().at((_BOARD[1], y)).to((node, y)))
-    small(drawing, (_BOARD[1] + 0.9, y + 0.6), "C3 2.2 uF")
+    drawing.add(elements.Resistor().at((_BOARD[1], y)).to((wave, y)))
+    small(drawing, (_BOARD[1] + 0.8, y + 0.65), "RC3 100")
+    drawing.add(elements.Capacitor().at((wave, y)).to((node, y)))
+    small(drawing, (wave - 0.1, y - 0.75), "C3 2.2 uF")
     drawing.add(elements.Diode().at((node, y - 1.5)).to((node, y)))
-    small(drawing, (node - 0.95, y - 1.0), "D1 1N5819")
+    small(drawing, (node - 1.05, y - 1.6), "D1 1N5819")
     ground(drawing, (node, y - 1.5), "")
     drawing.add(elements.Diode().at((node, y)).to((store, y)))
     small(drawing, (node + 0.8, y + 1.0), "D2 1N5819")
     drawing.add(elements.Capacitor(polar=True).at((store, y)).to((store, y - 1.5)))
     small(drawing, (store + 0.9, y - 1.0), "C4 10 uF")
     ground(drawing, (store, y - 1.5), "")
-    base = store + 2.0
+    base = store + 1.6
     drawing.add(elements.Resistor().at((store, y)).to((base, y)))
-    small(drawing, (store + 1.0, y + 0.5), f"R{transistor[1:]}  1 k")
+    small(drawing, (store + 0.9, y + 0.65), f"R{transistor[1:]} 1 k")
     bjt = drawing.add(elements.BjtNpn(circle=True).at((base, y)).anchor("base"))
-    text(drawing, (bjt.center[0] + 0.9, y), f"{transistor}  2N2222", align="left")
+    small(drawing, (bjt.center[0] + 1.5, y - 0.6), f"{transistor} 2N2222")
     ground(drawing, bjt.emitter, "")
     line(drawing, bjt.collector, (_DRIVER[0], bjt.collector[1]))
     text(drawing, (_DRIVER[0] + 0.2, bjt.collector[1]), "coil", align="left")

@@ -47,20 +47,20 @@ def _bypasses(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
 
 def _shifters(drawing: Drawing, machine: HobbingMachine, y: float) -> None:
     """Supplies of the level shifters; their channels stand in the lines."""
-    left = 14.0
-    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U5 74LVC245", at=y)
+    left, low = 14.0, y - 1.2
+    box(drawing, (left, left + 3.4), y + 0.7, low, "U5 74LVC245", at=y - 0.3)
     supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "VCC", "20")
     supply(drawing, (left + 2.6, y + 0.7), "+3.3 V", "DIR", "1")
-    ground(drawing, (left + 0.7, y - 0.8), "GND", "10")
-    ground(drawing, (left + 2.6, y - 0.8), "OE", "19")
+    ground(drawing, (left + 0.7, low), "GND", "10")
+    ground(drawing, (left + 2.6, low), "OE", "19")
     unused = sorted(pin.split(" ")[1] for part, pin in netlist(machine).nets[GROUND] if part == "U5" and " A" in pin)
     if unused:
-        small(drawing, (left + 1.7, y - 2.1), f"{', '.join(unused)}: to 0 V")
+        small(drawing, (left + 1.7, y - 2.5), f"{', '.join(unused)}: to 0 V")
     left += 5.4
-    box(drawing, (left, left + 3.4), y + 0.7, y - 0.8, "U6 BSS138", at=y)
+    box(drawing, (left, left + 3.4), y + 0.7, low, "U6 BSS138", at=y - 0.3)
     supply(drawing, (left + 0.7, y + 0.7), "+3.3 V", "LV")
     supply(drawing, (left + 2.6, y + 0.7), "+5 V", "HV")
-    ground(drawing, (left + 1.7, y - 0.8), "GND")
+    ground(drawing, (left + 1.7, low), "GND")
     text(drawing, (left + 4.2, y + 0.35), "+3.3 V is the 3.3 V pin of the board.", align="left")
     text(drawing, (left + 4.2, y - 0.25), f"No pin of the {machine.hardware.title} may ever see 5 V.", align="left")
 

@@ -10,14 +10,15 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from gearmath.bevel.identify.variables import reading
+from gearmath.arguments.call import checked_call
+from gearmath.bevel.identify.variables import NAMES, reading, variables_of
 from gearmath.bevel.pair import check_corrected
-from gearmath.errors import ComputationError, about
-from gearmath.front.measured import Evaluation, Measurement
+from gearmath.errors import ComputationError, InputError, about
+from gearmath.front.evaluated import Evaluation
+from gearmath.front.measured import Measurement, measurement_in
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, load_set
-from gearmath.front.tables import html_table
 from gearmath.quality.correction import member as correcting
 from gearmath.quality.correction.ease_off import moved_to_mate
 from gearmath.quality.correction.member import ROOT_LIMIT
@@ -28,7 +29,8 @@ from gearmath.quality.evaluation.member import STAGES
 from gearmath.quality.uncertainty.corrected import noise_of_points, point_covariance
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
-from gearmath.specs.bevel_set import MACHINE_SETTINGS
+from gearmath.shown import Shown, Shows, html_table
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
 from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
@@ -37,8 +39,8 @@ if TYPE_CHECKING:
     from gearmath.quality.uncertainty.settings import Effect
 
 
-@dataclass(frozen=True)
-class Correction:
+@dataclass(frozen=True, repr=False)
+class Correction(Shown):
     """Corrected settings of a measured member: ``found`` has settings (12,) of each flank in mm and rad.
 
     ``evaluation`` is what they correct; ``noise_um`` and ``root_limit`` [mm] as they were asked for.
@@ -79,6 +81,7 @@ class Correction:
         """The member with the corrected settings; its nominal flanks stay what they were."""
         return self.gear_set.member(self.measurement.member.name)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the corrected set as TOML, the nominal settings under ``design``. Raises ComputationError for no pair.
 
@@ -138,12 +141,21 @@ class Correction:
             },
         }
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            (f"{flank} RMS", f"{1000 * before:.4g} to {1000 * after:.4g}", "um")
+            for flank, (before, after) in self.rms.items()
+        ]
+        figures += [(f"{flank} {name}", change, reading(name)[1]) for flank, name, change in self.changes]
+        return f"correction of the {self.measurement.member.name}", figures
+
     def _repr_html_(self) -> str:
         rows = [[flank, name, change] for flank, name, change in self.changes]
         remains = ", ".join(f"{f} {1000 * a:.2f} of {1000 * b:.2f} um" for f, (b, a) in self.rms.items())
         return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
 
 
+@checked_call
 def compensate(
     measured: Measurement,
     settings: str | Sequence[str] = "few",
@@ -155,14 +167,21 @@ def compensate(
     bounds: Bounds = "machine",
     root_limit: float = ROOT_LIMIT,
     noise_um: float | None = None,
-    mate: Measurement | None = None,
+    mate: Measurement | str | Path | None = None,
     thickness: float = 0.0,
     thickness_by: By = "work_rotation_offset",
     begin: Begin = silent,
 ) -> Correction:
     """Corrected settings of what was measured; see :meth:`Measurement.compensate`."""
     member, name = measured.member.spec, measured.member.name
-    moved = None if mate is None else _moved(measured, mate, registered)
+    moved = None
+    with about(measured.source):
+        chosen = _free(settings)
+    if mate is not None:
+        other = measurement_in(mate, measured.member.gear_set)
+        if other.member.name == name:
+            raise InputError(f"mate: is a measurement of the {name} too: that of the other member is wanted")
+        moved = _moved(measured, other, registered)
     progress = begin(STAGES + correcting.STAGES, "stage")
     evaluation = measured.evaluate(registered, rotated, progress)
     found = evaluation.found
@@ -172,7 +191,7 @@ def compensate(
             member,
             name,
             found.file,
-            _free(settings),
+            chosen,
             objective=objective,
             higher_order=higher_order,
             few=settings == "few",
@@ -196,10 +215,20 @@ def _moved(measured: Measurement, mate: Measurement, registered: bool) -> dict[s
         return moved_to_mate(measured.member.gear_set.spec, mate.member.name, found.file, measured.file)
 
 
+#: Names of several settings; None where they suit the cutting method.
+_CHOICES = {"few": None, "standard": None, "all": MACHINE_SETTINGS}
+
+
 def _free(settings: str | Sequence[str]) -> tuple[str, ...] | None:
     """The settings that may change; None for those that suit the cutting method."""
     if isinstance(settings, str):
-        return None if settings in ("few", "standard") else MACHINE_SETTINGS if settings == "all" else (settings,)
+        if settings in _CHOICES:
+            return _CHOICES[settings]
+        if settings not in NAMES:
+            known = ", ".join((*_CHOICES, *SETTINGS, NAMES[-1]))
+            raise InputError(f"settings = {settings!r}: must be one of {known}, or a coefficient of a motion")
+        return (settings,)
+    variables_of(settings, 1)  # refuses what is no setting, before any work
     return tuple(settings)
 
 

@@ -7,17 +7,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
 from gearmath.bevel.blank import BevelBlank, blank_of
 from gearmath.bevel.blank_table import TableRow, by_name, rows, set_fragment
 from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.contact.report import shown_runs
 from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import load_known, reversed_set
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
 from gearmath.front.progress import Begin, silent
-from gearmath.front.sets import GearSet
-from gearmath.front.tables import html_table
+from gearmath.front.sets import GearSet, set_of
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.blank_data import load_blank_data
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv
@@ -27,8 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class PairDesign:
+@dataclass(frozen=True, repr=False)
+class PairDesign(Shown):
     """A designed pair; ``figures`` has what was asked and found, ``runs`` the exact contact of each side."""
 
     gear_set: GearSet
@@ -45,8 +47,12 @@ class PairDesign:
 
         return contact_figure(dict(self.runs))
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return self.gear_set.title, shown_runs(self.runs)
 
-def design(path: str | Path, gear: GearSet | None = None, begin: Begin = silent) -> PairDesign:
+
+@checked_call
+def design(path: str | Path, gear: GearSet | str | Path | None = None, begin: Begin = silent) -> PairDesign:
     """A pair that runs as the file of design data asks, or a pinion to a given ``gear``; docs/design.md.
 
     Raises InputError naming key, value and limit of what cannot be, ComputationError where no settings are found.
@@ -55,13 +61,13 @@ def design(path: str | Path, gear: GearSet | None = None, begin: Begin = silent)
     asked = load_design(source)
     progress = begin(1, "design")
     with about(source):
-        made, figures, runs = accepted(asked, str(source), None if gear is None else gear.spec)
+        made, figures, runs = accepted(asked, str(source), None if gear is None else set_of(gear).spec)
         progress(1)
     return PairDesign(GearSet(made.pair), figures, runs)
 
 
-@dataclass(frozen=True)
-class FoundSettings:
+@dataclass(frozen=True, repr=False)
+class FoundSettings(Shown):
     """The settings of a member that was measured: ``found`` says by flank how well they make its points [mm].
 
     ``title`` is that of the file of its blank.
@@ -79,7 +85,15 @@ class FoundSettings:
         flanks = {flank: found.as_dict() for flank, found in self.found.flanks.items()}
         return {"member": name, **stated, **flanks}
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = []
+        for flank, found in self.found.flanks.items():
+            figures.append((f"{flank}: RMS", 1000 * found.rms, "um"))
+            figures += [(f"{flank}: largest in size", 1000 * float(abs(found.after).max()), "um")]
+        return f"settings of the {next(iter(self.gear_set.spec.members))}, {self.title}", figures
 
+
+@checked_call
 def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin = silent) -> FoundSettings:
     """The settings of the member with these flanks, and how well they make them, as ``gearmath design --reverse``.
 
@@ -95,8 +109,8 @@ def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin =
     return FoundSettings(known.title, GearSet(found), how_well)
 
 
-@dataclass(frozen=True)
-class Blank:
+@dataclass(frozen=True, repr=False)
+class Blank(Shown):
     """The blank of a pair: ``spec`` has its figures to ISO 23509 in mm and rad."""
 
     title: str
@@ -115,14 +129,18 @@ class Blank:
         """The part of a gear set file that the blank is, TOML."""
         return set_fragment(self.spec)
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return f"blank, {self.title}", [(row.name.replace("_", " "), row.values, row.unit) for row in self.rows]
+
     def _repr_html_(self) -> str:
         return html_table(
             self.title,
             ["figure", "symbol", "unit", "value"],
-            [[row.name.replace("_", " "), row.symbol, row.unit, ", ".join(map(str, row.values))] for row in self.rows],
+            [[row.name.replace("_", " "), row.symbol, row.unit, row.values] for row in self.rows],
         )
 
 
+@checked_call
 def load_blank(path: str | Path) -> Blank:
     """The blank of a file of design data, or a bundled one. Raises InputError naming key, value and limit.
 

@@ -2,29 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.composed import Each, Either
+from gearmath.arguments.known import EXPRESSION, KERNEL
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import about
 from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
 from gearmath.export.post import post_file
-from gearmath.front.machines import Machine, load_machine
+from gearmath.front.machines import Machine, machine_of
 from gearmath.front.programs import cutting
 from gearmath.front.progress import Begin, silent
-from gearmath.front.sets import GearSet
+from gearmath.front.sets import GearSet, set_of
 from gearmath.machine.judging.dialects import named
 from gearmath.machine.planning.cut_plan import CuttingJob
 
 if TYPE_CHECKING:
     from derivations.expression import Expression
 
+_WHATS = "must be a kernel or an Expression, or a list of them"
+_WHAT = Either((KERNEL, EXPRESSION, Each(Either((KERNEL, EXPRESSION), _WHATS), _WHATS, 1)), _WHATS)
 
+
+@checked_call(what=_WHAT)
 def export_c(
-    what: Kernel | Expression | Iterable[Kernel | Expression], folder: str | Path, bits: int = 0
+    what: Kernel | Expression | Sequence[Kernel | Expression], folder: str | Path, bits: int = 0
 ) -> list[Path]:
     """Write the C of kernels or expressions into a folder: ``gm_<name>.h`` and ``gm_<name>.c`` of each.
 
@@ -32,7 +39,7 @@ def export_c(
     64 in whole numbers of that size. Raises ExportError (a ComputationError) naming what cannot become such C,
     InputError where the folder holds other files.
     """
-    each = list(what) if isinstance(what, Iterable) else [what]
+    each = list(what) if isinstance(what, Sequence) else [what]
     made = [one if isinstance(one, Kernel) else _lowered(one) for one in each]
     files: dict[str, str] = {}
     for one in made:
@@ -47,10 +54,11 @@ def _lowered(expression: Expression) -> Kernel:
     return lower(expression)
 
 
+@checked_call
 def export_cnc(
     folder: str | Path,
-    pair: GearSet | None = None,
-    machine: Machine | None = None,
+    pair: GearSet | str | Path | None = None,
+    machine: Machine | str | Path | None = None,
     control: str | None = None,
     blocks: Literal["g1", "poly"] = "g1",
     begin: Begin = silent,
@@ -60,7 +68,7 @@ def export_cnc(
     With a ``pair`` also a settings file of each member, from which ``gm-post``, a C program of the folder, writes the
     program of :meth:`Member.program`; ``control`` and ``blocks`` as there. Raises InputError.
     """
-    settings = {} if pair is None else _settings(pair, machine or load_machine(), control, blocks, begin)
+    settings = {} if pair is None else _settings(set_of(pair), machine_of(machine), control, blocks, begin)
     return list(_export_cnc(Path(folder), settings))
 
 

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearmath.front.tables import html_table
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
+from gearmath.shown import Shown, Shows
 from gearmath.specs.flank_csv import FlankFile, write_flank_csv
 
 if TYPE_CHECKING:
@@ -19,8 +21,8 @@ if TYPE_CHECKING:
     from gearmath.front.member import Member
 
 
-@dataclass(frozen=True)
-class FlankSurface:
+@dataclass(frozen=True, repr=False)
+class FlankSurface(Shown):
     """Points (rows, columns, 3) [mm] and outward unit normals of one flank, in the work frame; ``file`` is its CSV."""
 
     member: Member
@@ -30,17 +32,20 @@ class FlankSurface:
     file: FlankFile
 
     @classmethod
+    @checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"))
     def of(cls, member: Member, flank: str, file: FlankFile) -> FlankSurface:
         """The nominal points of a flank file as a grid."""
         rows, columns = (int(part) for part in file.header["grid"].split("x"))
         point, normal = (values.reshape(rows, columns, 3) for values in (file.point, file.normal))
         return cls(member, flank, point, normal, file)
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""
         write_flank_csv(Path(path), self.file)
         return Path(path)
 
+    @checked_call
     def to_text(self, path: str | Path) -> Path:
         """Write points and normals as plain text for other programs, a row ``x y z i j k`` each [mm]."""
         from gearmath.exchange.point_lines import write_points
@@ -66,15 +71,31 @@ class FlankSurface:
         axes.set_title(f"{self.member.name}, {self.flank} flank")
         return figure
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        rows, columns, _ = self.point.shape
+        figures: list[Shows] = [("rows", rows, ""), ("columns", columns, "")]
+        radius = np.hypot(self.point[..., 0], self.point[..., 1])
+        for name, values in (("z_w", self.point[..., 2]), ("radius", radius)):
+            figures.append((name, f"{values.min():.6g} to {values.max():.6g}", "mm"))
+        return f"{self.flank} flank of the {self.member.name}", figures
 
-@dataclass(frozen=True)
-class Tooth:
+
+@dataclass(frozen=True, repr=False)
+class Tooth(Shown):
     """A whole tooth space; ``figures`` are thickness, top land and so on [mm] by name."""
 
     member: Member
     space: ToothSpace
     figures: dict[str, float]
 
+    @property
+    def note(self) -> str:
+        """What to say of cutters for one flank whose far side cuts into the other one; else empty."""
+        from gearmath.bevel.design.point_widths import far_sides_note
+
+        return far_sides_note(self.member.spec, self.space)
+
+    @checked_call
     def to_stl(self, path: str | Path, whole_member: bool = True) -> int:
         """Write the closed solid of the member, or the surface of one space, as binary STL in mm; its triangles."""
         from gearmath.bevel.solid import member_triangles, space_triangles, write_stl
@@ -87,5 +108,11 @@ class Tooth:
         """The figures [mm] by name."""
         return dict(self.figures)
 
-    def _repr_html_(self) -> str:
-        return html_table(f"tooth of the {self.member.name}", ["figure", "mm"], list(self.figures.items()))
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            (name.removesuffix("_mm").replace("_", " "), value, "mm")
+            if name.endswith("_mm")
+            else (name.replace("_", " "), round(value), "")
+            for name, value in self.figures.items()
+        ]
+        return f"tooth space of the {self.member.name}", figures

@@ -5,23 +5,28 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast, get_args
+from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.composed import Either
+from gearmath.arguments.kinds import Number, Record, Text
+from gearmath.arguments.known import HOBBER
 from gearmath.errors import InputError
-from gearmath.front.machines import load_hobber
+from gearmath.front.hobbed import HobbedGear, HobbedThread
+from gearmath.front.machines import hobber_of, load_hobber
 from gearmath.front.progress import Begin, Progress, silent, unheard
-from gearmath.front.tables import html_table
 from gearmath.gearbox.hobbed.choice import MOST_CUTS, Choice
 from gearmath.gearbox.hobbed.choice import choose as search
-from gearmath.gearbox.hobbed.contributions import Contribution, sources
+from gearmath.gearbox.hobbed.contributions import sources
 from gearmath.gearbox.hobbed.drive import Rule
-from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, blame, cut_and_inspect, setup
-from gearmath.gearbox.hobbed.thread import ThreadTrace, cut_thread
-from gearmath.gearbox.hobbed.values import cut_values
+from gearmath.gearbox.hobbed.setup import blame, cut_and_inspect, setup
+from gearmath.gearbox.hobbed.thread import cut_thread
+from gearmath.gearbox.hobbed.undercut import measurable
 from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch_of
@@ -30,11 +35,23 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+_PER_TURN = Number(unit="mm per turn of the table")
+
 __all__ = ("Job", "choose", "export_teensy", "hob", "load_hobber", "plan")
 
 
-@dataclass(frozen=True)
-class Job:
+@checked_call(
+    machine=Record("gearmath.specs.hobbing", "HobbingMachine", "a hobbing machine or lathe"),
+    plan=Either(
+        (
+            Record("gearmath.gearbox.train", "GearboxPlan", ""),
+            Record("gearmath.gearbox.job", "ThreadPlan", ""),
+        ),
+        "must be the plan of a gear or of a thread",
+    ),
+)
+@dataclass(frozen=True, repr=False)
+class Job(Shown):
     """A job of the electronic gearbox; ``plan`` has exact ratio, rates against limits, what to set and measure."""
 
     machine: HobbingMachine
@@ -45,6 +62,7 @@ class Job:
         """Motor steps for each count of the encoder, exactly."""
         return self.plan.exact_pulse_ratio
 
+    @checked_call
     def simulate(
         self,
         pattern: Pattern = "forward",
@@ -56,14 +74,16 @@ class Job:
     ) -> Simulation:
         """Run the compiled step rule over so many encoder edges, "forward", "dither" or "reversals"; errors in steps.
 
-        It begins at the count ``start``; a ``trace`` keeps the errors on the way, for :meth:`plot`. Raises
-        ComputationError where there is no C compiler.
+        Returns ``worst_error`` of the rule and ``float_worst_error`` of a floating-point one beside it [steps], and
+        where encoder and motor stand at the end. It begins at the count ``start``; a ``trace`` keeps the errors on the
+        way, for :meth:`plot`. Raises ComputationError where there is no C compiler.
         """
         from gearmath.export.host import run_axes
 
         kept = Trace(edges) if trace is None else trace
         return simulate_job(run_axes, self.plan.ratio, pattern, edges, seed, progress, kept.add, start)
 
+    @checked_call
     def thread(
         self,
         length: float = 100.0,
@@ -85,9 +105,10 @@ class Job:
         return HobbedThread(self.plan, tuple(traces))
 
     def to_dict(self) -> dict[str, Any]:
-        """The plan by name, exact numbers as fractions."""
-        return asdict(self.plan)
+        """As ``gearmath gearbox plan --json`` prints it; what is a fraction also exactly, as text."""
+        return plain_numbers(asdict(self.plan))
 
+    @checked_call
     def plot(
         self,
         pattern: Pattern = "forward",
@@ -115,17 +136,48 @@ class Job:
         axes.set_title(f"{plan.machine}: {steps}, {plan.rpm:.0f} rpm")
         return figure
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        plan = self.plan
+        what = f"thread of {float(plan.pitch):g} mm" if isinstance(plan, ThreadPlan) else f"gear of {plan.teeth} teeth"
+        figures: list[Shows] = [("steps per count", str(self.steps_per_count), ""), ("speed", plan.rpm, "rpm")]
+        figures += [("at most", plan.highest_rpm, "rpm")]
+        return f"{what} on the {plan.machine}", figures
+
     def _repr_html_(self) -> str:
-        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str | Fraction)}
-        return html_table(f"job on the {self.plan.machine}", ["figure", "value"], list(plain.items()))
+        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str)}
+        return html_table(
+            f"job on the {self.plan.machine}",
+            ["figure", "value"],
+            [[key.replace("_", " "), value] for key, value in plain.items()],
+        )
 
 
+def plain_numbers(values: dict[str, Any]) -> dict[str, Any]:
+    """For JSON: a fraction as number, and exactly beside it."""
+    exact = {f"{key}_exact": str(value) for key, value in values.items() if isinstance(value, Fraction)}
+    return {key: float(value) if isinstance(value, Fraction) else value for key, value in values.items()} | exact
+
+
+@checked_call(machine=HOBBER, feed=Either((_PER_TURN, Text()), _PER_TURN.words))
 def plan(
-    machine: HobbingMachine | str | Path, teeth: int | None = None, pitch: str | None = None, **options: Any
+    machine: HobbingMachine | str | Path,
+    teeth: int | None = None,
+    pitch: str | None = None,
+    *,
+    starts: int | None = None,
+    hob: str | None = None,
+    rpm: float | None = None,
+    run_up: float | None = None,
+    helix: float | None = None,
+    hand: Hand | None = None,
+    cut: FeedSense | None = None,
+    feed: float | str | None = None,
+    shift: float = 0.0,
+    pin: float | None = None,
 ) -> Job:
     """Plan a gear of so many ``teeth`` on a hobbing machine, or a thread of a ``pitch`` ("1.25mm", "8tpi") on a lathe.
 
-    ``options`` of a gear: starts, hob, rpm, run_up [s], helix [degrees] with hand ("right" or "left"), cut ("climb" or
+    Of a gear: starts, hob, rpm, run_up [s], helix [degrees] with hand ("right" or "left"), cut ("climb" or
     "conventional") and, where the machine has no encoder on it, feed [mm per turn of the table]; shift, pin; of a
     thread: starts, hand, rpm, run_up. Raises InputError naming the limit that the job would break.
 
@@ -133,161 +185,106 @@ def plan(
     >>> gm.hobbing.plan("hobbing_plewes.toml", teeth=17).plan.teeth
     17
     """
-    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
+    known = hobber_of(machine)
     if known.profile == "lathe":
         if pitch is None or teeth is not None:
             raise InputError(f"{known.name} is a lathe: pitch is needed, and no teeth")
-        return Job(known, plan_thread(known, pitch_of(pitch), **options))
+        _refuse_in_vain("for a thread", hob=hob, helix=helix, cut=cut, feed=feed, shift=shift or None, pin=pin)
+        first = 1 if starts is None else starts
+        return Job(known, plan_thread(known, pitch_of(pitch), first, hand or "right", rpm, run_up))
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
-    way, feed = options.pop("cut", "climb"), options.pop("feed", None)
-    return Job(known, plan_gear(known, teeth, **_with_helix(options, way, feed)))
+    if helix is None:
+        _refuse_in_vain("without helix", hand=hand, cut=cut, feed=feed)
+    lead = _helix(helix, hand, cut or "climb", feed)
+    made = plan_gear(known, teeth, starts, hob, rpm, lead, shift, pin, run_up)
+    return Job(known, measurable(made, known, 0.0 if lead is None else lead.beta))
 
 
-@dataclass(frozen=True)
-class HobbedThread:
-    """The thread that the gearbox would cut: ``traces`` have where the carriage is too far [mm], one of each rule."""
-
-    plan: ThreadPlan
-    traces: tuple[ThreadTrace, ...]
-
-    def to_dict(self) -> dict[str, Any]:
-        """As ``gearmath gearbox cut --json`` prints it: dimensions in mm, deviations in um."""
-        return {
-            "machine": self.plan.machine,
-            "pitch": float(self.plan.pitch),
-            "lead": float(self.plan.lead),
-            "length": float(self.traces[0].place[-1]),
-            "rpm": self.plan.rpm,
-            "threads": [
-                {
-                    "rule": trace.rule,
-                    "single_lead_um": trace.single_lead * 1000,
-                    "total_um": trace.total * 1000,
-                    "drift_um": trace.drift * 1000,
-                }
-                for trace in self.traces
-            ],
-        }
-
-    def plot(self) -> Figure:
-        """The deviation along the thread."""
-        from gearmath.plot.hobbed import thread_figure
-
-        return thread_figure(self.plan.machine, list(self.traces))
-
-
-@dataclass(frozen=True)
-class HobbedGear:
-    """The gear that the gearbox would cut: ``gears`` have its inspection and classes, one of each rule; ``shares`` says
-    which part of the machine is to blame.
-    """
-
-    setup: CutSetup
-    gears: tuple[VirtualGear, ...]
-    shares: tuple[Contribution, ...]
-
-    @property
-    def gear(self) -> VirtualGear:
-        """As the first rule cuts it."""
-        return self.gears[0]
-
-    @property
-    def title(self) -> str:
-        """Machine, teeth and module."""
-        gear = self.setup.job.gear
-        return f"{self.setup.train.machine.name}: {gear.teeth} teeth, module {gear.module:.4g} mm, virtual"
-
-    def to_dict(self) -> dict[str, Any]:
-        """As ``gearmath gearbox cut --json`` prints it: figures in um, dimensions in mm."""
-        return cut_values(self.setup, self.gears, self.shares)
-
-    def to_csv(self, path: str | Path) -> Path:
-        """Write the measured points of the first rule; docs/virtual_hobbing.md."""
-        from gearmath.exchange.hobbed_csv import write_traces
-
-        write_traces(Path(path), self.setup.job, self.gear.found)
-        return Path(path)
-
-    def to_stl(self, path: str | Path, begin: Begin = silent) -> Path:
-        """Write the gear, a closed solid with its flanks as cut, as binary STL in mm."""
-        from gearmath.exchange.hobbed_stl import ALL, write_gear
-        from gearmath.gearbox.hobbed.envelope import Envelope
-
-        setup = self.setup
-        progress = begin(ALL * setup.job.gear.teeth, "point")
-        write_gear(Path(path), Envelope(setup.job, setup.train), setup.where, progress)
-        return Path(path)
-
-    def plot(self) -> Figure:
-        """The inspection chart."""
-        from gearmath.plot.hobbed import inspection_figure
-
-        return inspection_figure(self.title, [(gear.rule, gear.found) for gear in self.gears])
-
-
+@checked_call(machine=HOBBER, feed=_PER_TURN)
 def hob(
     machine: HobbingMachine | str | Path,
     teeth: int,
     compare: Rule | None = None,
     begin: Begin = silent,
-    **options: Any,
+    *,
+    hob: str | None = None,
+    starts: int | None = None,
+    helix: float | None = None,
+    hand: Hand | None = None,
+    shift: float = 0.0,
+    feed: float = 0.5,
+    face_width: float | None = None,
+    rpm: float | None = None,
+    seconds: float = 0.0,
+    climb: bool = True,
+    rule: Rule = "exact",
+    hob_shift: float = 0.0,
 ) -> HobbedGear:
     """Cut a gear virtually, inspect it, and tell which part of the machine is to blame; docs/virtual_hobbing.md.
 
-    ``compare`` is a second rule, cut beside the first. ``options``: hob, starts, helix [degrees], hand, shift, feed,
-    face_width, rpm, seconds, climb, rule, hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming
-    the limit that the job would break.
+    ``compare`` is a second rule, cut beside the first. helix [degrees] has a hand; feed [mm per turn of the table],
+    face_width and hob_shift [mm], as of ``gearmath gearbox cut``. Raises InputError naming the limit that the job would
+    break.
     """
-    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
-    way = "climb" if options.get("climb", True) else "conventional"
-    feed = None if known.feed is not None else options.get("feed", 0.5)
-    prepared = setup(known, teeth, **_with_helix(options, way, feed))
+    known = hobber_of(machine)
+    if helix is None:
+        _refuse_in_vain("without helix", hand=hand)
+    lead = _helix(helix, hand, "climb" if climb else "conventional", None if known.feed is not None else feed)
+    prepared = setup(known, teeth, hob, starts, lead, shift, feed, face_width, rpm, seconds, climb, rule, hob_shift)
     rules: tuple[Rule, ...] = tuple(dict.fromkeys(rule for rule in (prepared.train.rule, compare) if rule))
     progress = begin((len(rules) + len(sources(prepared.train))) * prepared.where.points, "point")
     gears = tuple(cut_and_inspect(prepared, rule, progress) for rule in rules)
     return HobbedGear(prepared, gears, blame(prepared, gears[0], progress))
 
 
+@checked_call(machine=HOBBER)
 def choose(
     machine: HobbingMachine | str | Path,
     wanted: int,
     module: float,
     teeth: int,
     begin: Begin = silent,
-    **options: Any,
+    *,
+    face_width: float | None = None,
+    helix: float | None = None,
+    hand: Hand | None = None,
 ) -> Choice:
     """The least microsteps, encoder lines and gashes, and the coarsest feed, that reach the class ``wanted``.
 
-    Normal ``module`` [mm]; ``options``: face_width [mm], helix [degrees], hand. Raises InputError where no class can be
-    given, ComputationError where the finest parts do not reach it.
+    Normal ``module`` and face_width [mm]; helix [degrees] has a hand. Returns ``parts`` with microsteps, lines, gashes
+    and feed [mm per turn of the table], the ``gear`` that they cut with its figures and classes, and ``rpm``, the
+    highest speed of the hob. Raises InputError where no class can be given, ComputationError where the finest parts do
+    not reach it.
     """
-    known = machine if isinstance(machine, HobbingMachine) else load_hobber(machine)
-    return search(known, wanted, module, teeth, **_with_helix(options), progress=begin(MOST_CUTS, "cut"))
+    known = hobber_of(machine)
+    if helix is None:
+        _refuse_in_vain("without helix", hand=hand)
+    lead = _helix(helix, hand, "climb", None)
+    return search(known, wanted, module, teeth, face_width, lead, progress=begin(MOST_CUTS, "cut"))
 
 
+@checked_call(machine=HOBBER)
 def export_teensy(machine: HobbingMachine | str | Path, folder: str | Path) -> list[str]:
     """Write the whole Teensy sketch of a hobbing machine or lathe; the names of its files. Raises InputError."""
     from gearmath.export.teensy import export_teensy as export
 
-    return list(export(machine if isinstance(machine, HobbingMachine) else load_hobber(machine), Path(folder)))
+    return list(export(hobber_of(machine), Path(folder)))
 
 
-def _with_helix(options: dict[str, Any], cut: str = "climb", feed: float | str | None = None) -> dict[str, Any]:
-    """The options with one helix of its angle [degrees] and hand. Raises InputError where it is none."""
-    helix, hand = options.get("helix"), options.get("hand")
-    rest = {key: value for key, value in options.items() if key != "hand"}
-    if helix is None:
-        if hand is not None:
-            raise InputError(f"hand = {hand!r}: has no meaning without helix")
-        return rest
-    hand = "right" if hand is None else hand
-    if hand not in get_args(Hand):
-        raise InputError(f"hand = {hand!r}: must be 'right' or 'left'")
-    if cut not in get_args(FeedSense):
-        raise InputError(f"cut = {cut!r}: must be 'climb' or 'conventional'")
+def _refuse_in_vain(where: str, **given: object) -> None:
+    """Raise InputError for an argument that would change nothing."""
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(f"{name} = {value!r}: has no meaning {where}")
+
+
+def _helix(angle: float | None, hand: Hand | None, cut: FeedSense, feed: float | str | None) -> Helix | None:
+    """The helix of an angle [degrees], none without it. Raises InputError where it is none."""
+    if angle is None:
+        return None
     try:
         per_turn = None if feed is None else Fraction(str(feed))
     except (ValueError, ZeroDivisionError):
         raise InputError(f"feed = {feed!r}: must be a number of mm per turn of the table") from None
-    return rest | {"helix": Helix(float(helix), cast("Hand", hand), cast("FeedSense", cut), per_turn)}
+    return Helix(float(angle), hand or "right", cut, per_turn)

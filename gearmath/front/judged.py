@@ -7,12 +7,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Place
 from gearmath.errors import InputError, about
+from gearmath.files import csv_text, write_text
 from gearmath.front.corrected import effects_um
-from gearmath.front.measured import Evaluation, Measurement
+from gearmath.front.evaluated import Evaluation
+from gearmath.front.measured import Measurement
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, Progress, silent
-from gearmath.front.tables import html_table
 from gearmath.quality.evaluation.member import STAGES
 from gearmath.quality.foreign.member import Foreign, Phase, foreign_file
 from gearmath.quality.foreign.points import Frame, PointPart
@@ -20,6 +23,7 @@ from gearmath.quality.uncertainty.corrected import uncertain_correction
 from gearmath.quality.uncertainty.figures import figures_of
 from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
 from gearmath.quality.uncertainty.source import covariance_of
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.point_text import PointText
 
 if TYPE_CHECKING:
@@ -37,8 +41,8 @@ _MACHINE, _PROBE = "vertical_5axis.toml", "probe.toml"
 _DRAWING, _CORRECTING = 8, 2
 
 
-@dataclass(frozen=True)
-class Uncertainty:
+@dataclass(frozen=True, repr=False)
+class Uncertainty(Shown):
     """Figures and settings with standard uncertainties, ``source`` says out of what; lengths in mm, angles in rad.
 
     ``effects`` say what errors of measurement do to each flank, ``draws`` and ``seed`` how maxima were found.
@@ -65,11 +69,26 @@ class Uncertainty:
             "remarks": [*found.first, *self.remarks],
         }
 
+    @checked_call
+    def to_csv(self, path: str | Path) -> Path:
+        """Write the figures, a line each in its own unit, with the columns of ``figures`` in :meth:`to_dict`."""
+        rows = [one.as_dict() for one in self.figures]
+        write_text(Path(path), csv_text(tuple(rows[0]), (row.values() for row in rows)))
+        return Path(path)
+
     def plot(self) -> Figure:
         """Every figure in um with its interval of 95 %."""
         from gearmath.plot import uncertainty_figure
 
         return uncertainty_figure(self.evaluation.title, list(self.figures))
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("figures", len(self.figures), ""),
+            ("draws", self.draws, ""),
+            ("from", self.source, ""),
+        ]
+        return f"uncertainties of the {self.evaluation.title}", figures
 
     def _repr_html_(self) -> str:
         names = ("flank", "figure", "value", "u", "unit")
@@ -77,6 +96,7 @@ class Uncertainty:
         return html_table(f"uncertainties from {self.source}", names, rows)
 
 
+@checked_call(machine=Place(), probe=Place())
 def uncertainty(
     measured: Measurement,
     sigma_um: float | None = None,
@@ -90,7 +110,7 @@ def uncertainty(
     seed: int = 0,
     workers: int | None = None,
     executor: Executor | None = None,
-    resume: Path | None = None,
+    resume: str | Path | None = None,
     begin: Begin = silent,
 ) -> Uncertainty:
     """Standard uncertainties of everything that a measurement says; see :meth:`Measurement.uncertainty`."""
@@ -102,7 +122,8 @@ def uncertainty(
         figures = figures_of(file, member, evaluation.found)
         covariance, source = covariance_of(file, member, sigma_um, model, machine, probe)
     heard = begin(draws, "draw")
-    sure = uncertain_figures(figures, covariance, draws, seed, executor, workers, resume, heard)
+    kept = None if resume is None else Path(resume)
+    sure = uncertain_figures(figures, covariance, draws, seed, executor, workers, kept, heard)
     _, settings, effects, remarks = uncertain_correction(member, file, evaluation.found, covariance, sigma_um)
     return Uncertainty(evaluation, source, (*sure, *settings), effects, tuple(remarks), draws, seed)
 
@@ -171,12 +192,16 @@ def _share(progress: Progress, draws: int) -> Progress:
     return drawn
 
 
-@dataclass(frozen=True)
-class ForeignPoints:
+@dataclass(frozen=True, repr=False)
+class ForeignPoints(Shown):
     """Points of another measuring machine as a measurement; ``found`` has how they were turned [rad], and gaps."""
 
     measurement: Measurement
     found: Foreign
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        title, figures = self.measurement._shown()
+        return title, [*figures, *(("remark", text, "") for text in self.found.remarks)]
 
 
 def foreign_points(

@@ -9,23 +9,25 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.composed import Either
+from gearmath.arguments.kinds import Record, Text
+from gearmath.arguments.known import MEMBER, ORIGIN, SET
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.member import Member
 from gearmath.front.progress import Progress, unheard
-from gearmath.front.sets import GearSet
-from gearmath.front.tables import html_table
-from gearmath.quality.evaluation.member import MemberEvaluation as Found
+from gearmath.front.sets import GearSet, set_of
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import evaluate_member
-from gearmath.quality.uncertainty.corrected import point_covariance
-from gearmath.quality.uncertainty.figures import figures_of
-from gearmath.quality.uncertainty.propagation import Uncertain, uncertain_figures
+from gearmath.shown import Shown, Shows
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from gearmath.front.corrected import Correction
+    from gearmath.front.evaluated import Evaluation
     from gearmath.front.judged import Uncertainty
     from gearmath.front.machines import Machine
     from gearmath.quality.correction.stock import Stock
@@ -33,12 +35,10 @@ if TYPE_CHECKING:
     from gearmath.quality.foreign.points import Frame
     from gearmath.specs.calibration import Calibration
 
-#: Enough for the spread of a maximum to 2 %.
-_FEW_DRAWS = 2000
 
-
-@dataclass(frozen=True)
-class Measurement:
+@checked_call(file=Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"), source=ORIGIN)
+@dataclass(frozen=True, repr=False)
+class Measurement(Shown):
     """The measured flanks of a member: ``file`` has points (n,3), normals, deviations (n,) [mm]; docs/files.md.
 
     ``source`` is where it was read, for sentences.
@@ -49,24 +49,27 @@ class Measurement:
     source: Path | None = None
 
     @staticmethod
+    @checked_call
     def from_touches(
         path: str | Path,
-        pair: GearSet,
-        machine: Machine | None = None,
-        probe: Calibration | None = None,
+        pair: GearSet | str | Path,
+        machine: Machine | str | Path | None = None,
+        probe: Calibration | str | Path | None = None,
         run: int | None = None,
     ) -> Measurement:
         """Raw touches of a probing program as corrected contact points and deviations [mm].
 
         By default those of the last run, which must be whole. Raises InputError naming file and point.
         """
-        from gearmath.front.machines import load_machine, load_probe
+        from gearmath.front.machines import machine_of, probe_of
         from gearmath.quality.evaluation.measured_run import measured_run
 
-        made = measured_run(Path(path), pair.spec, (machine or load_machine()).spec, probe or load_probe(), run)
+        pair = set_of(pair)
+        made = measured_run(Path(path), pair.spec, machine_of(machine).spec, probe_of(probe), run)
         return Measurement(pair.member(made.touches.member), made.file)
 
     @staticmethod
+    @checked_call
     def from_points(
         paths: Mapping[tuple[str, int], str | Path],
         member: Member,
@@ -95,12 +98,15 @@ class Measurement:
         """Deviations (n,) [mm] along the outward normals, positive where metal is left on."""
         return self.file.deviation
 
+    @checked_call
     def evaluate(self, registered: bool = True, rotated: bool = True, progress: Progress = unheard) -> Evaluation:
         """Pitch, runout, thickness and topography, clamping and rotation of the work taken out.
 
         ``registered=False`` and ``rotated=False`` leave them in; ``progress`` hears of every stage, of ``STAGES``.
         Raises InputError where the points are not those of the member.
         """
+        from gearmath.front.evaluated import Evaluation
+
         with about(self.source):
             found = evaluate_member(self.file, self.member.spec, self.member.name, registered, progress, rotated)
         return Evaluation(self, found)
@@ -132,35 +138,76 @@ class Measurement:
 
         return uncertainty(self, sigma_um, model, draws, **options)
 
+    @checked_call
     def share_stock(self, advance: bool = False, least: float = 0.0) -> Stock:
         """How the precut blank that was measured must stand so that both flanks share its stock [rad, mm].
 
-        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Raises InputError.
+        With ``advance`` it may also be moved along its axis; ``least`` [mm] must remain everywhere. Returns ``turn``
+        [rad], ``advance`` [mm], and by flank ``least``, ``mean`` and ``most`` of the stock then, and ``least_before``
+        [mm]. Raises InputError.
         """
         from gearmath.quality.correction.stock import share_stock
 
         with about(self.source):
             return share_stock(self.member.spec, self.member.name, self.file, advance, least)
 
-    def report(self, path: str | Path, *mate: Measurement, **head: str) -> Path:
+    @checked_call(**dict.fromkeys(("part_number", "date", "operator", "machine", "probe"), Text()))
+    def report(
+        self,
+        path: str | Path,
+        *mate: Measurement | str | Path,
+        again: Sequence[Measurement | str | Path] = (),
+        part_number: str | None = None,
+        date: str | None = None,
+        operator: str | None = None,
+        machine: str | None = None,
+        probe: str | None = None,
+    ) -> Path:
         """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
 
-        ``head``: part_number, date, operator, machine, probe. Raises InputError where the mate is of the same member.
+        ``again``: members measured again after the correction. Its head has part number, date, operator, machine and
+        probe, or those that the file states. Returns the path. Raises InputError where the mate is of the same member,
+        or ``again`` is of another.
         """
         from gearmath.front.judged import inspection
 
-        sheet = inspection((self, *mate), [head] * (1 + len(mate)))
+        mates, seconds = ([measurement_in(one, self.member.gear_set) for one in each] for each in (mate, again))
+        said = {"part_number": part_number, "date": date, "operator": operator, "machine": machine, "probe": probe}
+        head = {key: text for key, text in said.items() if text is not None}
+        sheet = inspection((self, *mates), [head] * (1 + len(mates)), seconds)
         write_text(Path(path), sheet.html)
         return Path(path)
 
+    @checked_call
     def to_csv(self, path: str | Path) -> Path:
         """Write the flank CSV of docs/files.md."""
         write_flank_csv(Path(path), self.file)
         return Path(path)
 
+    def to_dict(self) -> dict[str, Any]:
+        """Header and columns of the flank CSV; what it does not say is None."""
+        columns = {name: getattr(self.file, name) for name in ("flank", "tooth", "row", "col", "point", "normal")}
+        silent = {"deviation": self.file.deviation, "u": self.file.uncertainty}
+        return {
+            "member": self.member.name,
+            "header": dict(self.file.header),
+            **{name: values.tolist() for name, values in columns.items()},
+            **{name: [None if np.isnan(one) else float(one) for one in values] for name, values in silent.items()},
+        }
+
     def plot(self) -> Figure:
         """Topography of both flanks, pitch and runout as far as they were measured."""
         return self.evaluate().plot()
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        file, known = self.file, self.deviation[~np.isnan(self.deviation)]
+        figures: list[Shows] = [("points", len(file), "")]
+        if len(known):
+            largest, rms = float(known[abs(known).argmax()]), float(np.sqrt(np.mean(known**2)))
+            figures += [("largest deviation", 1000 * largest, "um"), ("RMS", 1000 * rms, "um")]
+        figures.append(("teeth", len(set(file.tooth.tolist()) - {self.member.teeth}), f"of {self.member.teeth}"))
+        where = "" if self.source is None else f", {self.source.name}"
+        return f"measured {self.member.name}{where}", figures
 
 
 def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measurement:
@@ -172,66 +219,24 @@ def measurement_of(path: str | Path, pair: GearSet, member: str | None) -> Measu
     return Measurement(pair.member(member or file.member), file, Path(path))
 
 
-def load_measurement(path: str | Path, member: Member | GearSet) -> Measurement:
-    """Read a measured flank CSV of a member, or of the member of a set that the file names. Raises InputError."""
+@checked_call(member=Either((MEMBER, SET), "must be a member, a gear set, or the file of a set"))
+def load_measurement(path: str | Path, member: Member | GearSet | str | Path) -> Measurement:
+    """Read a measured flank CSV of a member, or of the member of a set that the file names.
+
+    Raises InputError, also where it was measured against other nominal flanks.
+    """
     file = read_flank_csv(Path(path))
-    one = member.member(file.member) if isinstance(member, GearSet) else member
+    one = member if isinstance(member, Member) else set_of(member).member(file.member)
     if file.member != one.name:
         raise InputError(f"{path}: member = {file.member}: the measurement of the {one.name} is wanted")
+    with about(Path(path)):
+        check_belongs(one.spec, one.name, file)
     return Measurement(one, file, Path(path))
 
 
-@dataclass(frozen=True)
-class Evaluation:
-    """The figures of a measured member: ``found`` has all in mm, :meth:`to_dict` in µm, as the command's JSON."""
-
-    measurement: Measurement
-    found: Found
-
-    @property
-    def title(self) -> str:
-        """Member and file."""
-        name, source = self.measurement.member.name, self.measurement.source
-        return name if source is None else f"{name}, {source.name}"
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """What was left out or taken out, and what should be looked at."""
-        return self.found.remarks
-
-    def to_dict(self) -> dict[str, Any]:
-        """As ``gearmath evaluate --json`` prints it; lengths in µm where the name says so."""
-        return self.found.as_dict()
-
-    def plot(self) -> Figure:
-        """Topography of both flanks, pitch and runout as far as they were measured."""
-        from gearmath.plot import evaluation_figure
-
-        return evaluation_figure(self.title, self.found)
-
-    def uncertainties(self, sigma_um: float | None = None) -> list[Uncertain]:
-        """The figures with their standard uncertainties, from few draws: of ``sigma_um``, or else by u_um of the file.
-
-        None where neither says how well the points were measured; :meth:`Measurement.uncertainty` says more.
-        """
-        covariance = point_covariance(self.measurement.file, sigma_um)
-        if covariance is None:
-            return []
-        figures = figures_of(self.measurement.file, self.measurement.member.spec, self.found)
-        return uncertain_figures(figures, covariance, _FEW_DRAWS)
-
-    def _repr_html_(self) -> str:
-        flanks = self.to_dict()["flanks"]
-        names = [
-            name
-            for name in ("max_deviation_um", "rms_um", "F_p_um", "max_f_pt_um")
-            if any(name in row for row in flanks.values())
-        ]
-        rows = [
-            [flank, *("withheld" if row.get(name) is None else row[name] for name in names)]
-            for flank, row in flanks.items()
-        ]
-        return html_table(f"{self.measurement.member.name}, as measured", ["flank", *names], rows)
+def measurement_in(given: Measurement | str | Path, pair: GearSet) -> Measurement:
+    """A measurement, or that of a file, of the member of a pair that the file names."""
+    return given if isinstance(given, Measurement) else load_measurement(given, pair)
 
 
 def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurement:

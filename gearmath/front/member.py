@@ -9,15 +9,17 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import OneOf, Record, grid_of
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.grid import listed_grid
 from gearmath.bevel.nominal_file import nominal_flank
-from gearmath.errors import InputError, about
+from gearmath.errors import about
 from gearmath.front.changed import changed, check_keys, shallow
 from gearmath.front.flanks import FlankSurface, Tooth
 from gearmath.front.progress import Begin, silent
-from gearmath.front.tables import html_table
-from gearmath.specs.bevel_set import FLANKS, SETTINGS, BevelSet
+from gearmath.shown import Shown, Shows, html_table
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.margins import Margins
 from gearmath.specs.places import read_places
@@ -32,8 +34,13 @@ if TYPE_CHECKING:
     from gearmath.front.sets import GearSet
 
 
-@dataclass(frozen=True)
-class Member:
+@checked_call(
+    gear_set=Record("gearmath.front.sets", "GearSet", "a gear set"),
+    name=OneOf(MEMBERS),
+    spec=Record("gearmath.specs.bevel_set", "Member", "the part of a set file that is of a member"),
+)
+@dataclass(frozen=True, repr=False)
+class Member(Shown):
     """One member of a set: ``name`` is "pinion" or "gear", ``spec`` its part of the file, mm and degrees."""
 
     gear_set: GearSet
@@ -45,6 +52,7 @@ class Member:
         """How many."""
         return self.spec.teeth
 
+    @checked_call
     def with_settings(
         self, concave: Mapping[str, float] | None = None, convex: Mapping[str, float] | None = None
     ) -> Member:
@@ -67,6 +75,7 @@ class Member:
             values[flank] = {key: getattr(self.spec.flank(flank), key) + change for key, change in by.items()}
         return self.with_values(**values)
 
+    @checked_call
     def with_values(
         self, concave: Mapping[str, float] | None = None, convex: Mapping[str, float] | None = None
     ) -> Member:
@@ -93,16 +102,18 @@ class Member:
         spec = self.spec.model_copy(update=flanks)
         return self.gear_set.with_member(replace(self, spec=spec)).member(self.name)
 
+    @checked_call
     def flank(
         self,
         flank: str,
-        grid: tuple[int, int] | None = None,
+        grid: tuple[int, int] | str | None = None,
         margin: float | Margins = 0.1,
         places: tuple[np.ndarray, np.ndarray] | str | Path | None = None,
     ) -> FlankSurface:
         """Nominal points and outward normals of a flank on a grid, rows root to tip and columns toe to heel.
 
-        ``grid`` is (5, 9) if not given; ``margin`` is the part of working depth and face width left out on each side.
+        ``grid`` is (5, 9), or "5x9", if not given; ``margin`` is the part of working depth and face width left out on
+        each side.
         ``places`` are listed ones in their stead: z_w and radius (n,) [mm] from the pitch apex, or a file of such
         lines; one column where ``grid`` is not given. Raises InputError naming flank, row and column of a point that
         the cutter does not make.
@@ -111,15 +122,17 @@ class Member:
         >>> gm.load_set("nasa_tp3096_12x36.toml").pinion.flank("concave").point.shape
         (5, 9, 3)
         """
-        _check_flank(flank)
+
+        size = None if grid is None else grid_of(grid)
         if places is None:
-            at = blank_grid(self.spec, *(grid or (5, 9)), margin)
+            at = blank_grid(self.spec, *(size or (5, 9)), margin)
             return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, margin))
-        axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else places
+        axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else map(np.asarray, places)
         with about(Path(places) if isinstance(places, str | Path) else None):
-            at = listed_grid(self.spec, axial, radial, grid or (len(axial), 1))
+            at = listed_grid(self.spec, axial, radial, size or (len(axial), 1))
         return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, None))
 
+    @checked_call
     def tooth(self, columns: int = 25) -> Tooth:
         """The whole tooth space, root and fillets too. Raises InputError where the cutter does not make it."""
         from gearmath.bevel.tooth import space_figures, tooth_space
@@ -127,6 +140,7 @@ class Member:
         space = tooth_space(self.spec, self.name, columns)
         return Tooth(self, space, space_figures(self.spec, space))
 
+    @checked_call
     def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
         """Write the closed solid of the member in its work frame for CAD; by its name, what was written.
 
@@ -141,18 +155,20 @@ class Member:
         progress(2)
         return write_step(Path(path), bodies, progress)
 
-    def deviations(self, grid: tuple[int, int] = (5, 9), margin: float = 0.1) -> Measurement:
+    @checked_call
+    def deviations(self, grid: tuple[int, int] | str = (5, 9), margin: float = 0.1) -> Measurement:
         """The flanks that the settings cut as deviations [mm] from the nominal ones, on the exact surface.
 
         As a measurement of one tooth without noise. Raises ComputationError where a flank is too far off.
         """
         from gearmath.front.measured import deviations
 
-        return deviations(self, grid, margin)
+        return deviations(self, grid_of(grid), margin)
 
+    @checked_call
     def program(
         self,
-        machine: Machine | None = None,
+        machine: Machine | str | Path | None = None,
         name: str = "GEAR",
         spaces: Sequence[int] | None = None,
         tolerance: float = 1e-4,
@@ -170,15 +186,18 @@ class Member:
         "linuxcnc", by default that of the machine. The program is run before it is returned. Raises InputError naming
         what the machine cannot do.
         """
+        from gearmath.front.machines import machine_of
         from gearmath.front.programs import cutting
         from gearmath.machine.planning.cut_plan import CuttingJob
 
         chosen = list(range(self.teeth) if spaces is None else spaces)
         stocks = roughing_stock, finishing_stock
         job = CuttingJob(chosen, tolerance, feed, spindle_rpm, *stocks, dry_run, blocks)
-        return cutting(self, machine, name, job, control)
+        return cutting(self, machine_of(machine), name, job, control)
 
-    def probing(self, machine: Machine | None = None, name: str = "PROBE", **options: Any) -> ProbingProgram:
+    def probing(
+        self, machine: Machine | str | Path | None = None, name: str = "PROBE", **options: Any
+    ) -> ProbingProgram:
         """The program that probes the member: a grid of both flanks, and the reference point of every tooth.
 
         ``options``: probe, as of :func:`gearmath.load_probe`; topography, the teeth with a grid, by default (0,); pitch
@@ -194,11 +213,11 @@ class Member:
 
         return probing(self, machine, name=name, **options)
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        spec = self.spec
+        figures: list[Shows] = [("teeth", spec.teeth, ""), ("hand", spec.hand, ""), ("cutting", spec.cutting, "")]
+        return f"{self.name} of {self.gear_set.title}", figures
+
     def _repr_html_(self) -> str:
         rows = [[key, *(getattr(self.spec.flank(flank), key) for flank in FLANKS)] for key in SETTINGS]
         return html_table(f"{self.name} of {self.gear_set.title}", ["setting (mm, degree)", *FLANKS], rows)
-
-
-def _check_flank(flank: str) -> None:
-    if flank not in FLANKS:
-        raise InputError(f"flank = {flank!r}: must be {' or '.join(FLANKS)}")

@@ -8,10 +8,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Truth
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
-from gearmath.front.machines import Machine, load_machine, load_probe
-from gearmath.front.measured import Measurement
+from gearmath.front.machines import Machine, machine_of, probe_of, shop_of
+from gearmath.front.measured import Measurement, load_measurement
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.machine.bodies.profiles import obstacles
@@ -32,8 +34,8 @@ from gearmath.quality.calibration.tip import Tip
 from gearmath.quality.evaluation.calibrated_run import calibrated_run
 from gearmath.quality.evaluation.file_checks import check_belongs, check_points
 from gearmath.quality.evaluation.nominal import nominal_rows
+from gearmath.shown import Shown, Shows
 from gearmath.specs.calibration import Calibration
-from gearmath.specs.measurement import MOST_TOUCHES
 from gearmath.specs.simulated_machine import SimulatedMachine
 from gearmath.specs.touch_csv import planned_touches
 
@@ -41,8 +43,8 @@ if TYPE_CHECKING:
     from gearmath.machine.control.state import Probe
 
 
-@dataclass(frozen=True)
-class ProbingProgram:
+@dataclass(frozen=True, repr=False)
+class ProbingProgram(Shown):
     """A program that probes ``member``, or without one ring and spheres.
 
     What :meth:`Member.probing` and :meth:`Machine.calibrating` write was run before it is returned; ``clearance`` says
@@ -69,11 +71,13 @@ class ProbingProgram:
         """How many blocks the control runs."""
         return of_text(self.text).block_count(self.text)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the program, in one step; the file should be called ``name``.MPF, which the control expects."""
         write_text(Path(path), self.text)
         return Path(path)
 
+    @checked_call
     def sheet(self, file: str) -> str:
         """The set-up sheet of the program in a ``file`` of this name: HTML that prints on A4."""
         from gearmath.setup_sheet import ProbingJob, calibration_sheet, probing_sheet
@@ -86,6 +90,7 @@ class ProbingProgram:
         what = title, member.name, member.spec, machine, self.probe, fixture, radius, self.touches, self.clearance
         return probing_sheet(ProbingJob(*what), file, words)
 
+    @checked_call
     def check(self, begin: Begin = silent) -> None:
         """Raise InputError where the probe meets a nominal member, touches what it lacks, or does what it must not."""
         machine, probe, name = self.machine.spec, self.probe, self.name
@@ -102,11 +107,12 @@ class ProbingProgram:
             found = judge_probing(self.read, name, spec, own, machine, probe, begin(self._measuring, "block"))
         refuse_faults(found, name)
 
+    @checked_call
     def run(
         self,
         path: str | Path,
-        measured: Measurement | None = None,
-        shop: SimulatedMachine | None = None,
+        measured: Measurement | str | Path | None = None,
+        shop: SimulatedMachine | str | Path | None = None,
         number: int = 1,
         begin: Begin = silent,
     ) -> Path:
@@ -116,12 +122,15 @@ class ProbingProgram:
         probe, and each run ``number`` has its own noise. Raises InputError where it touches what is not there.
         """
         there: Probe
+        shop = shop_of(shop)
         if self.member is None:
             count, steps = None, self._measuring
             there = Artefacts(self.machine.spec, self.probe)
         else:
             count = self._count
             steps = 3 * count
+            if isinstance(measured, str | Path):
+                measured = load_measurement(measured, self.member)
             there = _on_machine(self.member, measured, self.machine, self.probe, shop)
         progress = begin(steps, "block")
         raw = run_touches(self.read, self.name, there, shop, count, number, progress, self._setup)
@@ -146,25 +155,38 @@ class ProbingProgram:
     def _count(self) -> int:
         return touch_count(self.read, self.name, self._setup)
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        what = (
+            f"probing the {self.member.name} of {self.member.teeth} teeth"
+            if self.member
+            else f"finding the {self.cycle}"
+        )
+        figures: list[Shows] = [
+            ("touches", self.touches, ""),
+            ("blocks", self.blocks, ""),
+            ("machine", self.machine.spec.name, ""),
+        ]
+        return f"{self.name}, {what}", figures
 
+
+@checked_call(pitch=Truth())
 def probing(
     member: Member,
-    machine: Machine | None = None,
-    probe: Calibration | None = None,
+    machine: Machine | str | Path | None = None,
+    probe: Calibration | str | Path | None = None,
     name: str = "PROBE",
     topography: Sequence[int] = (0,),
     pitch: bool = True,
     registration: bool = True,
     repeat: int = 1,
-    shop: SimulatedMachine | None = None,
+    shop: SimulatedMachine | str | Path | None = None,
     control: str | None = None,
     file: str | Path | None = None,
     begin: Begin = silent,
 ) -> ProbingProgram:
     """The program that probes a member; see :meth:`gearmath.Member.probing`. Sentences name the ``file`` it is for."""
-    if isinstance(repeat, bool) or not isinstance(repeat, int) or not 1 <= repeat <= MOST_TOUCHES:
-        raise InputError(f"repeat = {repeat!r}: must be a whole number from 1 to {MOST_TOUCHES}")
-    machine, probe = machine or load_machine(), probe or load_probe()
+    shop = shop_of(shop)
+    machine, probe = machine_of(machine), probe_of(probe)
     choice = ProbingChoice(topography, pitch, registration, repeat)
     dialect = named(machine.spec.control.dialect(control))
     where = member.gear_set.spec, member.name, machine.spec, probe
@@ -172,9 +194,10 @@ def probing(
     return ProbingProgram(member, machine, probe, name, made.text, made.clearance, shop)
 
 
+@checked_call
 def calibrating(
-    machine: Machine | None = None,
-    probe: Calibration | None = None,
+    machine: Machine | str | Path | None = None,
+    probe: Calibration | str | Path | None = None,
     cycle: Literal["tip", "axes"] = "tip",
     name: str = "CALIBRATE",
     control: str | None = None,
@@ -183,9 +206,7 @@ def calibrating(
     begin: Begin = silent,
 ) -> ProbingProgram:
     """The program that calibrates; see :meth:`gearmath.Machine.calibrating`. ``source`` is the file of the probe."""
-    if cycle not in ("tip", "axes"):
-        raise InputError(f"cycle = {cycle!r}: must be 'tip' or 'axes'")
-    machine, probe = machine or load_machine(), probe or load_probe()
+    machine, probe = machine_of(machine), probe_of(probe)
     make, target = (axis_program if cycle == "axes" else calibration_program), str(file or name)
     dialect = named(machine.spec.control.dialect(control))
     with about(None if source is None else Path(source)):
@@ -199,13 +220,13 @@ def calibrating(
 
 def calibrate(
     path: str | Path,
-    machine: Machine | None = None,
-    probe: Calibration | None = None,
+    machine: Machine | str | Path | None = None,
+    probe: Calibration | str | Path | None = None,
     lobing: bool = False,
     run: int | None = None,
 ) -> Tip | AxisCalibration:
     """The tip of the probe, or the rotary axes; see :meth:`gearmath.Machine.calibrate`."""
-    machine, probe = machine or load_machine(), probe or load_probe()
+    machine, probe = machine_of(machine), probe_of(probe)
     return calibrated_run(Path(path), machine.spec, probe, run, lobing).found
 
 

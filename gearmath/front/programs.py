@@ -7,11 +7,14 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.kinds import Record
+from gearmath.arguments.known import KNOWN
 from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
 from gearmath.errors import InputError
 from gearmath.files import write_text
-from gearmath.front.machines import Machine, load_machine
-from gearmath.front.measured import Measurement
+from gearmath.front.machines import Machine, load_machine, shop_of
+from gearmath.front.measured import Measurement, load_measurement
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, Progress, silent, unheard
 from gearmath.machine.bodies.cutter import cutter_of
@@ -28,20 +31,21 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
 from gearmath.machine.planning.targets import teeth_around
+from gearmath.shown import Shown, Shows
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 if TYPE_CHECKING:
+    from gearmath.front.timing import ProgramTime
     from gearmath.machine.control.executor import MachinePath
     from gearmath.machine.judging.cut import MetalLeft
     from gearmath.machine.judging.report import MillingReport
-    from gearmath.machine.judging.trajectory import Trajectory
 
 #: Columns of the tooth space that programs are judged with.
 _COLUMNS = 7
 
 
-@dataclass(frozen=True)
-class Judgement:
+@dataclass(frozen=True, repr=False)
+class Judgement(Shown):
     """What is wrong with a program: ``left`` what it leaves of the metal, ``faults`` a sentence each, or none.
 
     ``remarks`` are sentences about what only takes time.
@@ -51,9 +55,18 @@ class Judgement:
     faults: tuple[str, ...]
     remarks: tuple[str, ...] = ()
 
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [("faults", len(self.faults), ""), ("remarks", len(self.remarks), "")]
+        figures += [("fault", text, "") for text in self.faults] + [("remark", text, "") for text in self.remarks]
+        return "the machine must not run it" if self.faults else "the machine may run it", figures
 
-@dataclass(frozen=True)
-class Program:
+
+@checked_call(
+    machine=Record("gearmath.front.machines", "Machine", "a machine"),
+    made=Record("gearmath.machine.judging.checked", "CheckedCut", "the plan of a program"),
+)
+@dataclass(frozen=True, repr=False)
+class Program(Shown):
     """The text of a program for a member on a machine, and its name on the control or in its file.
 
     ``made`` is the plan that it was written from, where it was written here.
@@ -70,11 +83,13 @@ class Program:
         """How many blocks the control runs."""
         return of_text(self.text).block_count(self.text)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the program, in one step; its file should be called ``name``.MPF, or .ngc for LinuxCNC."""
         write_text(Path(path), self.text)
         return Path(path)
 
+    @checked_call
     def sheet(self, file: str) -> str:
         """The set-up sheet of the program in a ``file`` of this name: HTML that prints on A4.
 
@@ -89,8 +104,9 @@ class Program:
         facts = SetupFacts.of(self.made.plan, PLUNGE_FEED)
         return setup_sheet(facts, file, timing(self.path, self.machine.spec), of_text(self.text).sheet)
 
+    @checked_call
     def mill(
-        self, shop: SimulatedMachine | None = None, progress: Progress = unheard, number: int | None = None
+        self, shop: SimulatedMachine | str | Path | None = None, progress: Progress = unheard, number: int | None = None
     ) -> Measurement:
         """The deviations [mm] that the program leaves: both flanks of tooth 0, the reference point of all others.
 
@@ -98,7 +114,7 @@ class Program:
         measured as that shop does. ``progress`` is called for every flank. Raises InputError where a flank is left
         uncut, and where it is measured without a shop.
         """
-        member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        member, name, machine, shop = self.member.spec, self.member.name, self.machine.spec, shop_of(shop)
         if number is not None and shop is None:
             raise InputError("a measurement needs the file that says how the member sits and what the probe does")
         narrowest = None if member.cutting == "completing" else self.space
@@ -116,12 +132,17 @@ class Program:
             file = measure_member(left, member, name, shop, number)
         return Measurement(self.member, file)
 
-    def judge(self, milled: Measurement | None = None, begin: Begin = silent) -> Judgement:
+    @checked_call
+    def judge(self, milled: Measurement | str | Path | None = None, begin: Begin = silent) -> Judgement:
         """What the machine must not run: travel, speed, collisions, modes, metal that is left or gouged.
 
-        On a machine without errors. ``milled`` is what :meth:`mill` has found of such a machine, to be asked once.
+        Returns ``faults`` and ``remarks``, a sentence each, and ``left``, what is left of the metal: ``left.tolerance``
+        [mm] is how far flanks may deviate. On a machine without errors. ``milled`` is what :meth:`mill` has found of
+        such a machine, to be asked once.
         """
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        if isinstance(milled, str | Path):
+            milled = load_measurement(milled, self.member)
         known = None if milled is None else milled.file
         progress = begin(member.teeth, "space")
         left = metal_faults(self.read, self.path, self.runs, member, name, machine, self.space, progress, known)
@@ -136,21 +157,24 @@ class Program:
         member, name, machine = self.member.spec, self.member.name, self.machine.spec
         return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
 
+    @checked_call(tolerance=KNOWN["report_tolerance"])
     def report(
         self,
         tolerance: float = 1e-3,
-        shop: SimulatedMachine | None = None,
+        shop: SimulatedMachine | str | Path | None = None,
         begin: Begin = silent,
         flank_tolerance: float | None = None,
     ) -> MillingReport:
         """Gouges, uncut stock beyond ``tolerance`` [mm], collisions, axis speeds and time, of every surface.
 
-        Flanks may have a ``flank_tolerance`` [mm] of their own.
+        Flanks may have a ``flank_tolerance`` [mm] of their own. Returns ``surfaces`` with the ``lowest`` and
+        ``highest`` place of each [mm], those of them that are ``gouges`` or ``uncut``, ``collisions``, and in
+        ``timing`` seconds and the speed of each axis.
         """
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
 
-        member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        member, name, machine, shop = self.member.spec, self.member.name, self.machine.spec, shop_of(shop)
         corrected = shop is None and any(member.flank(flank).design for flank in FLANKS)
         progress = begin(5 * member.teeth * (1 + corrected), "surface")
         return milling_report(
@@ -165,11 +189,11 @@ class Program:
             flank_tolerance=flank_tolerance,
         )
 
-    def time(self) -> Trajectory:
+    def time(self) -> ProgramTime:
         """How long the control takes [s], where it is slow, and how far it leaves the path; as ``gearmath nc time``."""
         from gearmath.front.timing import timed
 
-        return timed(self.read, self.name, self.machine, path=self.path).trajectory
+        return timed(self.read, self.name, self.machine, path=self.path)
 
     @cached_property
     def read(self) -> str:
@@ -192,6 +216,14 @@ class Program:
         """The tools of the program on a machine without errors, with blades as sharp as there are."""
         member, machine = self.member, self.machine.spec
         return runs_of(self.path, member.spec, member.name, machine, None, self.space, SHARP_EDGE)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("blocks", self.blocks, ""),
+            ("text", len(self.text) // 1000, "kB"),
+            ("machine", self.machine.spec.name, ""),
+        ]
+        return f"{self.name}, cutting the {self.member.name} of {self.member.teeth} teeth", figures
 
 
 def cutting(

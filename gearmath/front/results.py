@@ -8,10 +8,10 @@ from __future__ import annotations
 from gearmath.front.contact import Contact
 from gearmath.front.corrected import Correction
 from gearmath.front.design import Blank, FoundSettings, PairDesign
+from gearmath.front.evaluated import Evaluation
 from gearmath.front.flanks import FlankSurface, Tooth
-from gearmath.front.hobbing import HobbedGear, HobbedThread
+from gearmath.front.hobbed import HobbedGear, HobbedThread
 from gearmath.front.judged import Uncertainty
-from gearmath.front.measured import Evaluation
 from gearmath.front.probing import ProbingProgram
 from gearmath.front.timing import ProgramTime
 

@@ -7,12 +7,16 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gearmath.arguments.call import checked_call
+from gearmath.arguments.composed import Each
+from gearmath.arguments.kinds import Content, OneOf, Record
+from gearmath.arguments.known import ORIGIN
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import about
 from gearmath.files import write_text
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
-from gearmath.front.tables import html_table
+from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.toml import find
@@ -24,8 +28,12 @@ if TYPE_CHECKING:
     from gearmath.front.measured import Measurement
 
 
-@dataclass(frozen=True)
-class GearSet:
+_SPEC = Record("gearmath.specs.bevel_set", "BevelSet", "the checked content of a set file")
+
+
+@checked_call(spec=_SPEC, source=ORIGIN, remarks=Each(Content(), "must be a list of sentences"))
+@dataclass(frozen=True, repr=False)
+class GearSet(Shown):
     """A pinion and a gear, or one of them, that are one physical pair; ``spec`` is the checked content of the file.
 
     ``source`` is the file that it was read from, ``remarks`` what was left aside there.
@@ -50,10 +58,12 @@ class GearSet:
         """The gear. Raises InputError where the set has none."""
         return self.member("gear")
 
+    @checked_call(name=OneOf(MEMBERS))
     def member(self, name: str) -> Member:
         """The member called ``name``, "pinion" or "gear". Raises InputError."""
         return Member(self, name, self.spec.member(name))
 
+    @checked_call
     def with_member(self, member: Member) -> GearSet:
         """The set with this member in place of the one of its name.
 
@@ -61,12 +71,13 @@ class GearSet:
         """
         return self.with_spec(self.spec.model_copy(update={member.name: member.spec}))
 
+    @checked_call(spec=_SPEC)
     def with_spec(self, spec: BevelSet) -> GearSet:
         """The set of other content, which no file has yet. Raises InputError where it is no pair."""
         check_pair(spec)
         return GearSet(spec)
 
-    def contact(self, *measured: Measurement, **options: Any) -> Contact:
+    def contact(self, *measured: Measurement | str | Path, **options: Any) -> Contact:
         """How the pair runs at an assembly, on its nominal flanks or on ``measured`` ones of a member or of both.
 
         ``options``: v, h, j [mm] and shaft, by how much the shaft angle grows [degrees], docs/contact.md; sides, of
@@ -83,6 +94,7 @@ class GearSet:
         return contact(self, *measured, **options)
 
     @staticmethod
+    @checked_call
     def from_rexs(path: str | Path) -> GearSet:
         """The set of the bevel stage in a REXS 2.0.0 file; its remarks say what of the file has no place in a set.
 
@@ -95,6 +107,7 @@ class GearSet:
             check_pair(pair)
         return GearSet(pair, remarks=left_aside)
 
+    @checked_call
     def save(self, path: str | Path) -> Path:
         """Write the set as TOML (mm, degrees), in one step. Raises InputError where the place cannot be written."""
         from gearmath.specs.set_text import set_text
@@ -130,6 +143,7 @@ class GearSet:
 
         return ease_off_of(self.spec)
 
+    @checked_call
     def to_step(self, path: str | Path, begin: Begin = silent) -> dict[str, WrittenSolid]:
         """Write the pair in mesh, or the only member, as closed solids for CAD; by member, what was written.
 
@@ -146,6 +160,7 @@ class GearSet:
         progress(2)
         return write_step(Path(path), bodies, progress)
 
+    @checked_call
     def to_stl(self, path: str | Path, begin: Begin = silent) -> int:
         """Write the pair in mesh as triangles, touching on the drive side; how many. Of one member: ``tooth().to_stl``.
 
@@ -163,18 +178,26 @@ class GearSet:
         progress(1)
         return len(triangles)
 
+    @checked_call
     def to_rexs(self, path: str | Path) -> int:
         """Write the set as REXS 2.0.0; the number of its components."""
         from gearmath.exchange.rexs import write_rexs
 
         return write_rexs(Path(path), self.spec)
 
+    @checked_call
     def to_summary(self, path: str | Path) -> Path:
         """Write the summary sheet, HTML that prints on A4: blank, settings and cutter build, in mm and inches."""
         from gearmath.setup_sheet.summary import summary_sheet
 
         write_text(Path(path), summary_sheet(self.spec))
         return Path(path)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        spec = self.spec
+        teeth = " x ".join(str(spec.member(name).teeth) for name in spec.members)
+        kinds = ", ".join(dict.fromkeys(spec.member(name).process.replace("_", " ") for name in spec.members))
+        return self.title, [("teeth", teeth, ""), ("shaft angle", spec.shaft_angle, "degrees"), ("made by", kinds, "")]
 
     def _repr_html_(self) -> str:
         flanks = [(name, flank) for name in self.spec.members for flank in FLANKS]
@@ -189,6 +212,7 @@ class GearSet:
         return html_table(self.title, ["setting", "unit", *(f"{name} {flank}" for name, flank in flanks)], rows)
 
 
+@checked_call
 def load_set(path: str | Path) -> GearSet:
     """Read a gear set: a TOML file, or the name of a bundled one. See docs/set_file.md.
 
@@ -200,3 +224,8 @@ def load_set(path: str | Path) -> GearSet:
     """
     source = find(str(path))
     return GearSet(load_pair(source), source)
+
+
+def set_of(given: GearSet | str | Path) -> GearSet:
+    """A gear set, or that of a file."""
+    return given if isinstance(given, GearSet) else load_set(given)

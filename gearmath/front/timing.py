@@ -12,14 +12,15 @@ from gearmath.machine.control.state import Setup
 from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.judging.trajectory import Trajectory, trajectory
 from gearmath.machine.measuring.probe_run import probing_path, touches_artefacts, writes_touches
+from gearmath.shown import Shown, Shows
 from gearmath.specs.calibration import Calibration
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@dataclass(frozen=True)
-class ProgramTime:
+@dataclass(frozen=True, repr=False)
+class ProgramTime(Shown):
     """A program as the control moves the axes; ``touches`` says where those of a probe are counted to."""
 
     name: str
@@ -43,6 +44,20 @@ class ProgramTime:
         from gearmath.plot.trajectory import speed_figure
 
         return speed_figure(self.path, self.trajectory, self.machine.spec)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        found = self.trajectory
+        figures: list[Shows] = [
+            ("total", found.total_seconds, "s"),
+            ("blocks", found.blocks, ""),
+            ("off the path", found.path_error_um, "um"),
+            ("feed", found.feed_seconds, "s"),
+            ("feed as asked", found.asked_seconds, "s"),
+            ("rapid motion", found.rapid_seconds, "s"),
+            ("dwell", found.dwell_seconds, "s"),
+            ("slow corners", found.slow_corners, f"of {found.corners}"),
+        ]
+        return f"{Path(self.name).name} on the {self.machine.spec.name}", figures
 
 
 def timed(

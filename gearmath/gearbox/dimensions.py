@@ -90,15 +90,18 @@ def undercut(gear: Gear, height: float) -> Undercut | None:
     return Undercut(least, (none - gear.teeth) / (none - whole))  # it is linear in the shift
 
 
-def span(gear: Gear) -> Span | None:
-    """The span that touches nearest to the middle of the flanks; None where no span lies on them."""
+def span(gear: Gear, involute_from: float = 0.0) -> Span | None:
+    """The span that touches nearest to the middle of the flanks; None where no span lies on them.
+
+    The flanks are involutes from the radius ``involute_from`` [mm] on.
+    """
     (best,) = evaluate("span_teeth", gear.teeth, gear.alpha, gear.beta, gear.shift)
     if not math.isfinite(best):
         return None
     k = max(2, round(best))
     shape = (gear.module, gear.alpha, gear.beta, gear.shift)
     length, touched, face_width = evaluate("span_measurement", k, gear.teeth, *shape)
-    if k >= gear.teeth or touched >= blank_diameter(gear):
+    if k >= gear.teeth or not 2 * involute_from <= touched < blank_diameter(gear):
         return None
     return Span(k, length, face_width)
 
@@ -110,24 +113,26 @@ def chord(gear: Gear) -> Chord:
     return Chord(thickness, height)
 
 
-def over_pins(gear: Gear, pin: float | None = None) -> OverPins | None:
+def over_pins(gear: Gear, pin: float | None = None, involute_from: float = 0.0) -> OverPins | None:
     """Measurement over pins of diameter ``pin`` [mm], 1.68 modules if not given.
 
-    None where such pins do not touch the flanks, or vanish below the tips.
+    None where such pins do not touch the flanks, which are involutes from the radius ``involute_from`` [mm] on, or
+    vanish below the tips.
     """
     size = PIN * gear.module if pin is None else pin
     touched = pin_contact(gear, size)
-    if touched is None:
+    if touched is None or touched.radius < involute_from:
         return None
     return OverPins(size, touched.over_pins)
 
 
 @dataclass(frozen=True)
 class PinContact:
-    """Where pins touch the flanks: pressure angle at the middle of the pin [rad], length of roll, and M [mm]."""
+    """Where pins touch the flanks: pressure angle at the middle of the pin [rad]; length of roll, radius, M [mm]."""
 
     angle: float
     roll_length: float
+    radius: float
     over_pins: float
 
 
@@ -142,7 +147,7 @@ def pin_contact(gear: Gear, pin: float) -> PinContact | None:
     outside = blank_diameter(gear)
     if contact <= 0.0 or touched >= outside or length <= outside:
         return None
-    return PinContact(angle, contact / 2, length)
+    return PinContact(angle, contact / 2, touched / 2, length)
 
 
 #: The residual (9.12) rises and curves upwards: Newton's method falls monotonically to the root from above it.

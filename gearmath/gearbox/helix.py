@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from gearmath.errors import InputError
-from gearmath.gearbox.kernels import evaluate, expression, precise
+from gearmath.gearbox.kernels import evaluate, exactly, precise
 from gearmath.specs.helix import SIGNS, Helix
 from gearmath.specs.hobbing import HobbingMachine
 
@@ -125,7 +125,7 @@ def helical_ratio(
 def hob_ratio(machine: HobbingMachine, teeth: int, starts: int) -> Fraction:
     """κ_h, motor steps per count of the hob, exactly; negative for a left-hand hob."""
     train = (SIGNS[machine.hob_hand], teeth, starts, machine.encoder_counts, machine.motor_steps)
-    return expression("hob_ratio").exact(*train)[0]
+    return exactly("hob_ratio", *train)
 
 
 def _fed(machine: HobbingMachine, teeth: int, starts: int, module: float, helix: Helix) -> tuple[JobRatio, Rounding]:

@@ -10,7 +10,7 @@ from derivations import notation as q
 from derivations.quantity import Quantity
 from gearmath.errors import InputError
 from gearmath.gearbox.helix import SIGNS, JobRatio, one_term
-from gearmath.gearbox.kernels import evaluate, expression
+from gearmath.gearbox.kernels import evaluate, exactly
 from gearmath.gearbox.motion import MotorMotion, check_run_up, motion
 from gearmath.specs.hobbing import NARROW, Hand, HobbingMachine
 
@@ -156,7 +156,7 @@ def plan_thread(
 def thread_ratio(machine: HobbingMachine, pitch: Fraction, starts: int, hand: Hand) -> JobRatio:
     """κ_t of (9.14), exactly."""
     train = (machine.lead_screw_pitch, machine.encoder_counts, machine.motor_steps)
-    exact = expression("lead_screw_ratio").exact(SIGNS[hand], starts, pitch, *train)[0]
+    exact = exactly("lead_screw_ratio", SIGNS[hand], starts, pitch, *train)
     return one_term(exact, machine.encoder_counts.denominator)
 
 

@@ -6,6 +6,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 import derivations
+from gearmath.engine.exact import exact
 from gearmath.kernels import kernel
 
 if TYPE_CHECKING:
@@ -20,6 +21,12 @@ def expression(name: str) -> Expression:
 def evaluate(name: str, *arguments: float) -> tuple[float, ...]:
     """Its outputs at one point, in double precision."""
     return tuple(float(output) for output in kernel(name)(*arguments))
+
+
+def exactly(name: str, *arguments: Fraction | int) -> Fraction:
+    """Its only output at one point of rational numbers, exactly."""
+    (value,) = exact(kernel(name), *arguments)
+    return value
 
 
 def precise(name: str, *arguments: float) -> Fraction:

@@ -63,7 +63,11 @@ def check_run_up(machine: HobbingMachine, job: MotorMotion, rpm: float, seconds:
         given = machine.limits.run_up_s * rpm / machine.limits.hob_rpm
     if given is None or given >= job.shortest_run_up_s:
         return
-    key = "run_up" if seconds is not None else "limits.run_up_s"
+    if seconds is not None:
+        stated = f"run_up = {seconds:g} s"
+    else:
+        limits = machine.limits
+        stated = f"limits.run_up_s = {limits.run_up_s:g} s to {limits.hob_rpm:g} rpm, {given:.3g} s to {rpm:.0f} rpm"
     rate = job.run_up_s * machine.limits.acceleration_hz_per_s / rpm  # steps/s per rpm
 
     def carried(speed: float) -> bool:
@@ -75,7 +79,7 @@ def check_run_up(machine: HobbingMachine, job: MotorMotion, rpm: float, seconds:
 
     slower = _highest(carried, rpm)
     raise InputError(
-        f"{key} = {given:.3g} s: with {what} the motor of {machine.name} follows a hob that takes at least "
+        f"{stated}: with {what} the motor of {machine.name} follows a hob that takes at least "
         f"{job.shortest_run_up_s:.3g} s to {rpm:.0f} rpm (limits.acceleration_hz_per_s = "
         f"{machine.limits.acceleration_hz_per_s:g}, limits.lag_steps = {machine.limits.lag_steps}); the nearest speed "
         f"with this run-up is {slower:.0f} rpm"

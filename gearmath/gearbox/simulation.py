@@ -15,6 +15,7 @@ import numpy as np
 
 from gearmath.errors import ComputationError, InputError
 from gearmath.gearbox.helix import JobRatio
+from gearmath.shown import Shown, Shows
 
 Pattern = Literal["forward", "dither", "reversals"]
 LONGEST_RUN = 5000  # edges between two reversals, at most
@@ -160,8 +161,8 @@ def _first_not_below(wanted: np.ndarray) -> np.ndarray:
     return (first + (first.astype(np.float32) < wanted)).astype(np.int64)
 
 
-@dataclass(frozen=True)
-class Simulation:
+@dataclass(frozen=True, repr=False)
+class Simulation(Shown):
     """Outcome of one run. Errors in steps; positions at the end in counts and steps.
 
     The floating rule knows only the hob; its error is against the hob's part of the motion.
@@ -175,6 +176,15 @@ class Simulation:
     worst_error: Fraction
     float_position: int
     float_worst_error: Fraction
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return f"{self.edges} encoder edges, {self.pattern}", [
+            ("worst error", self.worst_error, "steps"),
+            ("of the floating rule", self.float_worst_error, "steps"),
+            ("position", self.position, "steps"),
+            ("of the encoder", self.encoder_position, "counts"),
+            ("position of the floating rule", self.float_position, "steps"),
+        ]
 
 
 class Trace:

@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable, Hashable
 from typing import Any
 
-from gearmath.bevel.contact.system import MOST_MM
+from gearmath.arguments.known import MOST_MM
 from gearmath.errors import InputError
 from gearmath.front.contact import Contact, contact
 from gearmath.front.measured import Measurement

@@ -10,6 +10,7 @@ from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
+from gearmath.arguments.known import MOST_TOUCHES
 from gearmath.errors import InputError
 from gearmath.files import read_bytes
 from gearmath.front.machines import load_machine, load_probe, load_shop
@@ -36,7 +37,6 @@ from gearmath.machine.planning.cut_plan import (
 from gearmath.machine.planning.limits import check_spindle_speed
 from gearmath.machine.writing.words import check_name
 from gearmath.specs.bevel_set import FLANKS, Member
-from gearmath.specs.measurement import MOST_TOUCHES
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.touch_csv import planned_touches
 

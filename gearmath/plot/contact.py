@@ -19,12 +19,14 @@ from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 _ARCSEC = math.degrees(1) * 3600
 #: Colors of the kinds of contact.
-_KINDS = {"interior": AFTER, "edge": BEFORE, "corner": INK}
+_KINDS = {"interior": AFTER, "edge": BEFORE, "corner": INK, "fillet": "#d98c00"}
 _SAMPLES, _ELLIPSES = 361, 9
 #: Leads further behind than this many times what the pair runs on are not drawn.
 _SHOWN = 4.0
 #: Difference of leads [rad] that counts as none.
 _SAME_LEAD = 1e-10
+#: Room about the tooth, in parts of its width.
+_ROOM = 0.04
 #: Contact lines to a pitch.
 _CONTACT_LINES = 4
 
@@ -71,17 +73,21 @@ def _draw_v_h(axes: Axes, run: Mesh, limits: dict[str, Any] | None) -> None:
         axes.text(0.5, 0.9, words, transform=axes.transAxes, ha="center", va="top", fontsize=8)
     V, H = run.assembly[:2]
     axes.plot([V], [H], "+", color=INK, markersize=9)
-    for name, along in (("v", (1.0, 0.0)), ("h", (0.0, 1.0))):
-        for at in (limits or {}).get(name, {}).values():
+    # a pair that runs on edges as it stands has none
+    found_limits = limits or {}
+    changes = found_limits.get("outcome_changes") or {}
+    for name, along in (("v", np.array([1.0, 0.0])), ("h", np.array([0.0, 1.0]))) if changes else ():
+        for sense, at in found_limits[name].items():
             value, edge = at["value"], at["edge"]
-            end = V + value * along[0], H + value * along[1]
+            end, turns = (np.array([V, H]) + one * along for one in (value, changes[name][sense]["value"]))
             axes.plot([V, end[0]], [H, end[1]], color=BEFORE, linewidth=1.2, marker="|" if along[0] else "_")
+            axes.plot([V, turns[0]], [H, turns[1]], color=AFTER, linewidth=3.5, alpha=0.6, solid_capstyle="butt")
             words = edge or f"no edge to {value:+.2g}"
-            axes.annotate(words, end, fontsize=6, color=BEFORE, ha="center")
+            axes.annotate(words, tuple(end), fontsize=6, color=BEFORE, ha="center")
     axes.axhline(0, color=NOMINAL, linewidth=0.5)
     axes.axvline(0, color=NOMINAL, linewidth=0.5)
     axes.margins(0.25)
-    _label(axes, "V-H diagram" + (": to the edges" if limits else ""), "V / mm", "H / mm")
+    _label(axes, "V-H diagram" + ("; thick: outcome stays" if changes else ""), "V / mm", "H / mm")
 
 
 def _draw_error(axes: Axes, run: Mesh, title: str) -> None:
@@ -183,6 +189,10 @@ def _outline(axes: Axes, found: ContactPattern) -> Patch:
     rim = [np.concatenate([a[0], a[1:, -1], a[-1, ::-1], a[::-1, 0]]) for a in (x, y)]
     (tooth,) = axes.fill(*rim, facecolor="#f7f7f7", edgecolor=INK, linewidth=0.8, zorder=0)
     axes.set_aspect("equal")
+    # an ellipse that runs out on nearly conjugate flanks must not shrink the tooth to a stamp
+    for limits, ends in ((axes.set_xlim, x), (axes.set_ylim, y)):
+        room = _ROOM * float(np.nanmax(x) - np.nanmin(x))
+        limits(float(np.nanmin(ends)) - room, float(np.nanmax(ends)) + room)
     return tooth
 
 

@@ -7,12 +7,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from derivations import notation
+from gearmath.bevel.ridge import point_width
+from gearmath.bevel.tooth import ToothSpace, mean_backlash, tooth_space
 from gearmath.machine.bodies.blades import blade_phase
 from gearmath.page import Page
+from gearmath.setup_sheet.dimensions import Dimension, dimensions
 from gearmath.specs.bevel_set import (
     ADVANCE,
     FLANKS,
     MACHINE_SETTINGS,
+    MEMBERS,
     BevelSet,
     Flank,
     Member,
@@ -38,6 +42,7 @@ _TRADE = {
 #: What a positive value does, by chapters 1 and 2.
 _SENSE = {component.name: component.description for component in notation.settings.components}
 _ROLL = ("2C", "6D", "24E", "120F")
+_ROLL_SENSE = "derivative of -(work rotation / ratio of roll) by the cradle rotation"
 _INCH = 25.4
 _BLADES = {"concave": "outside blade", "convex": "inside blade"}
 
@@ -68,7 +73,13 @@ def summary_sheet(pair: BevelSet) -> str:
     page = Page(f"Summary sheet: {pair.title}")
     page.paragraph(pair.source)
     page.paragraph(f"Shaft angle {pair.shaft_angle:g} degrees. Made by gearmath {__version__}.")
+    if len(pair.members) == len(MEMBERS):
+        backlash = mean_backlash(*(pair.member(name) for name in MEMBERS))
+        page.paragraph(
+            f"Transverse backlash of the pair at the mean point: {backlash:.3f} mm, {backlash / _INCH:.4f} in."
+        )
     for k, (name, member) in enumerate(pair.members.items()):
+        space = tooth_space(member, name)
         page.heading(name.capitalize(), new_sheet=k > 0)
         method = (member.process, member.generation, member.cutting)
         page.head(
@@ -83,6 +94,9 @@ def summary_sheet(pair: BevelSet) -> str:
             page.paragraph("The settings are corrected ones; those of the nominal flanks stand in the set file.")
         for unit in UNITS:
             page.table(f"Blank, from the pitch apex; {unit.name}", ["figure", "value"], list(_blank(member, unit)))
+        found = dimensions(member, name)
+        for unit in UNITS:
+            page.table(f"Dimensions of the teeth; {unit.name}", ["figure", "value"], list(_dimensions(found, unit)))
         for unit in UNITS:
             rows = [[label, *_both(values), sense] for label, values, sense in _settings(member, unit)]
             page.table(f"Machine settings; {unit.name}", ["setting", *FLANKS, "positive"], rows)
@@ -91,7 +105,13 @@ def summary_sheet(pair: BevelSet) -> str:
             page.table(
                 f"Cutter build; {unit.name}",
                 ["", *(f"{_BLADES[flank]}, {flank} flank" for flank in FLANKS)],
-                [[label, *_both(values)] for label, values in _cutter(member, unit)],
+                [[label, *_both(values)] for label, values in _cutter(member, space, unit)],
+            )
+        chosen = [flank for flank in FLANKS if _chosen_width(member, flank)]
+        if chosen:
+            page.paragraph(
+                f"The set states no point width for the {' and '.join(_BLADES[flank] for flank in chosen)}: the width "
+                "above is the one that gearmath nc cut takes, from the slot of the root."
             )
     return page.html
 
@@ -108,6 +128,16 @@ def _blank(member: Member, unit: SheetUnit) -> Iterator[list[str]]:
         yield [key.replace("_", " "), unit.angle(value) if is_angle else unit.length(value)]
 
 
+def _dimensions(found: list[Dimension], unit: SheetUnit) -> Iterator[list[str]]:
+    for one in found:
+        yield [one.label, unit.length(one.value) if one.kind == "length" else unit.angle(math.degrees(one.value))]
+
+
+def _chosen_width(member: Member, flank: str) -> bool:
+    """Whether the point width of a cutter for one flank is left to the planner."""
+    return member.cutting == "fixed_setting" and member.flank(flank).blade_point_width is None
+
+
 def _settings(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, str], str]]:
     """Machine settings of both flanks by name, and what a positive value is; then what moves with the cradle."""
     for name in MACHINE_SETTINGS:
@@ -116,11 +146,11 @@ def _settings(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, 
         yield _TRADE[name], {flank: _setting(member, member.flank(flank), name, unit) for flank in FLANKS}, _SENSE[name]
         if name == RATIO:
             inverse = {flank: f"{1 / member.flank(flank).ratio_of_roll:.7f}" for flank in FLANKS}
-            yield "ratio of roll, cradle by work", inverse, ""
+            yield "ratio of roll, cradle by work", inverse, "cradle rotation per work rotation"
     for k, label in enumerate(_ROLL):
         values = {flank: member.flank(flank).motion.roll[k] for flank in FLANKS}
         if any(values.values()):
-            yield f"modified roll, {label}", {flank: f"{value:.6f}" for flank, value in values.items()}, ""
+            yield f"modified roll, {label}", {flank: f"{value:.6f}" for flank, value in values.items()}, _ROLL_SENSE
     for name in MACHINE_SETTINGS:
         given = {flank: getattr(member.flank(flank).motion, name) for flank in FLANKS}
         for power in range(max(map(len, given.values()))):
@@ -148,7 +178,7 @@ def _setting(member: Member, spec: Flank, name: str, unit: SheetUnit) -> str:
     return unit.length(value - (member.blank.pitch_apex_beyond_crossing_point if name == ADVANCE else 0.0))
 
 
-def _cutter(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, str]]]:
+def _cutter(member: Member, space: ToothSpace, unit: SheetUnit) -> Iterator[tuple[str, dict[str, str]]]:
     """What the one who builds the cutters sets, by blade; what is not stated is left empty."""
     specs = {flank: member.flank(flank) for flank in FLANKS}
 
@@ -156,7 +186,7 @@ def _cutter(member: Member, unit: SheetUnit) -> Iterator[tuple[str, dict[str, st
     yield ("point diameter", {flank: unit.length(2 * spec.blade_point_radius) for flank, spec in specs.items()})
     yield ("pressure angle", {flank: unit.angle(spec.blade_pressure_angle) for flank, spec in specs.items()})
     yield ("edge radius", {flank: _stated(spec.blade_edge_radius, unit) for flank, spec in specs.items()})
-    width = {flank: _stated(spec.blade_point_width or 0.0, unit) for flank, spec in specs.items()}
+    width = {flank: unit.length(point_width(member, flank, space.slots[flank])) for flank in FLANKS}
     if member.cutting == "completing":
         between = specs["concave"].blade_point_radius - specs["convex"].blade_point_radius
         width = dict.fromkeys(FLANKS, unit.length(between) if "work_rotation_offset" in member.shared_settings else "")

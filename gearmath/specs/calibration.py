@@ -11,6 +11,7 @@ import tomlkit
 from pydantic import Field, model_validator
 
 from gearmath.files import read_text, write_text
+from gearmath.shown import Shown, Shows
 from gearmath.specs.toml import Spec, load, parse
 
 _Number = Annotated[float, Field(strict=True)]
@@ -76,7 +77,7 @@ class WorkSphere(Spec):
         return np.array([self.radius * math.cos(at), self.radius * math.sin(at), self.axial])
 
 
-class Calibration(Spec):
+class Calibration(Shown, Spec):
     """A touch probe in the tool spindle, mm; ``offset`` and ``tip_radius`` are what calibration finds."""
 
     name: str = Field(min_length=1, max_length=200)
@@ -112,6 +113,10 @@ class Calibration(Spec):
     def tip_offset(self) -> np.ndarray:
         """o of equation (15.3), (3,) mm."""
         return np.array(self.offset)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [("tip radius", self.tip_radius, "mm"), ("length", self.length, "mm")]
+        return self.name, [*figures, ("offset", self.offset, "mm"), ("lobes", self.lobing_um, "um")]
 
 
 def load_calibration(path: Path) -> Calibration:

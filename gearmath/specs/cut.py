@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from derivations import Quantity, notation
 from gearmath.specs.sheet import Angle, Length, Sheet, Unit, is_number, refusal_of, shown
@@ -27,6 +27,18 @@ RATIO = "ratio_of_roll"
 _Coefficients = Annotated[tuple[Annotated[float, Field(ge=-1000, le=1000)], ...], Field(strict=False, max_length=7)]
 _Lengths = Annotated[_Coefficients, Unit("mm")]
 _Angles = Annotated[_Coefficients, Unit("degree")]
+
+#: Less than this is no rounded edge [mm].
+_SHARP = 0.001
+
+
+def _edge(radius: float) -> float:
+    if 0 < radius < _SHARP:
+        raise ValueError(f"must be 0, for a sharp corner, or at least {shown(_SHARP):g}")
+    return radius
+
+
+EdgeRadius = Annotated[Length, Field(ge=0, le=10), AfterValidator(_edge)]
 
 
 class Motion(Sheet):
@@ -129,7 +141,7 @@ class Flank(Settings):
     """How one flank is cut; ``design``, where given, holds the settings of the nominal flank, the others corrected."""
 
     blade_profile_height: Length = Field(gt=0, le=60)
-    blade_edge_radius: Length = Field(default=0.0, ge=0, le=10)
+    blade_edge_radius: EdgeRadius = 0.0
     #: Of a hobbing blade: its tip stands so far above the plane of the point radius, or below it where negative (mm).
     blade_tip_height: Length = Field(default=0.0, ge=-2, le=2)
     #: Of a fixed-setting cutter, which has another side (mm); without it the root of the space decides.

@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 
 from gearmath.kernels import kernel
 from gearmath.specs.blank_data import Backlash, BlankData, DataType1, DataType2, Taper
+from gearmath.specs.cut import EdgeRadius
 from gearmath.specs.sheet import Angle, Length, Sheet, shown
 from gearmath.specs.toml import checked, load
 
@@ -68,7 +69,7 @@ class PinionMethod(Sheet):
     free: tuple[Free, ...] | None = Field(default=None, strict=False)
     #: Tilt of the cutter; without it none for a generated gear, and square to the root line of a Formate one.
     cutter_tilt: Angle | None = Field(default=None, ge=-30, le=30)
-    blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
+    blade_edge_radius: EdgeRadius | None = None
 
     @model_validator(mode="after")
     def _tilt(self) -> PinionMethod:
@@ -92,7 +93,7 @@ class GearMethod(Sheet):
     """How the gear is cut; both its flanks in one cut."""
 
     generation: Literal["generated", "formate"] = "generated"
-    blade_edge_radius: Length | None = Field(default=None, ge=0, le=10)
+    blade_edge_radius: EdgeRadius | None = None
 
 
 class ContactRequest(Sheet):
@@ -271,7 +272,8 @@ class DesignData(Sheet):
             "tooth_depth_factor": depth,
             "clearance_factor": _CLEARANCE_FACTOR,
             "mean_addendum_factor": float(addendum) * (_FORMATE if self.gear.generation == "formate" else 1.0),
-            "thickness_factor": float(thickness),
+            # fitted to usual ratios; it falls again beyond them, and below zero from 15 on
+            "thickness_factor": max(float(thickness), 0.0),
         }
 
 

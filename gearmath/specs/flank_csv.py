@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.errors import InputError
-from gearmath.files import write_text
+from gearmath.files import read_text, write_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.file_kinds import told
 from gearmath.specs.lines import Line, read_lines
 from gearmath.specs.margins import OWN, PATTERN
 
@@ -170,7 +171,9 @@ def read_flank_csv(path: Path) -> FlankFile:
     """Read a flank file. Raises InputError naming file, line, key, value and limit."""
     header, lines = read_lines(path, (*HEADER, PLANNED))
     if not lines or lines[0].cells != COLUMNS:
-        raise InputError(f"{path}: is no flank file: the column line must read {','.join(COLUMNS)}")
+        raise InputError(
+            f"{path}: is no flank file: the column line must read {','.join(COLUMNS)}{told(read_text(path))}"
+        )
     missing = [key for key in HEADER if key not in header]
     if missing:
         raise InputError(f"{path}: the header line '# {missing[0]}: ...' is missing")

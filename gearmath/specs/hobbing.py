@@ -15,6 +15,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, AliasChoices, Field, model_validator
 
 from derivations import notation
+from gearmath.shown import Shown, Shows
 from gearmath.specs.board import BOARDS, Board, BoardName, Display, Pins
 from gearmath.specs.counters import (
     DEFAULT_PINS,
@@ -34,6 +35,8 @@ from gearmath.specs.toml import Spec, find, load
 
 __all__ = ["Hob", "HobbingMachine", "load_hobbing_machine"]
 
+#: The display has two digits for the number of a hob.
+MOST_HOBS = 99
 #: An LS7184 ignores A and B during its output pulse of 10 us, so that faster edges are lost.
 LS7184_EDGE_RATE = 100_000
 #: Largest denominator of the rule in 32 bits; gearmath.gearbox.proof shows that it is tight.
@@ -77,7 +80,7 @@ class Limits(Spec):
         return data
 
 
-class HobbingMachine(Spec):
+class HobbingMachine(Shown, Spec):
     """A hobbing machine, or a lathe, with an electronic gearbox. Names as in the generated ``gm_machine.h``."""
 
     name: Annotated[str, AfterValidator(_plain)] = Field(min_length=1, max_length=60)
@@ -135,6 +138,8 @@ class HobbingMachine(Spec):
         names = [hob.name for hob in self.hobs]
         if self.profile == "hobbing" and not names:
             raise ValueError("hobs: the list is empty, at least one [[hobs]] must be there")
+        if len(names) > MOST_HOBS:
+            raise ValueError(f"hobs: the list has {len(names)}, at most {MOST_HOBS} have a number on the display")
         for place, name in enumerate(names, 1):
             if name in names[: place - 1]:
                 raise ValueError(f"hobs #{place}: hob {name} stands in the list more than once, take it out")
@@ -330,6 +335,14 @@ class HobbingMachine(Spec):
         """Motor steps per second of a jog or an index move."""
         limits = self.limits
         return int(min(2000.0, limits.step_rate_hz) if limits.move_rate_hz is None else limits.move_rate_hz)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("kind", self.profile, ""),
+            ("board", self.board, ""),
+            ("encoder lines", self.encoder.lines, ""),
+        ]
+        return self.name, [*figures, ("hobs", tuple(hob.name for hob in self.hobs), "")]
 
 
 def load_hobbing_machine(path: Path) -> HobbingMachine:

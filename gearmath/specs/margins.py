@@ -23,6 +23,14 @@ class Margins:
     toe: float
     heel: float
 
+    def __post_init__(self) -> None:
+        for low, high in (("root", "tip"), ("toe", "heel")):
+            one, other = getattr(self, low), getattr(self, high)
+            if not (one >= 0 and other >= 0 and one + other < 1):
+                raise InputError(
+                    f"margins: {low} = {one}, {high} = {other}: must be at least 0, and less than 1 together"
+                )
+
     @classmethod
     def alike(cls, margin: float) -> Margins:
         """The same part on all four sides."""

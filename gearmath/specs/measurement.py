@@ -9,9 +9,6 @@ from pydantic import Field
 
 from gearmath.specs.toml import Spec, load
 
-#: Touches of one point at most, in one run of a program.
-MOST_TOUCHES = 100
-
 
 class MeasuringModel(Spec):
     """Standard uncertainties (1 sigma) of what goes into a touch, and how many touches are averaged."""

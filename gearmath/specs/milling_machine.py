@@ -14,13 +14,14 @@ from pydantic import AfterValidator, Field, model_validator
 from gearmath.files import read_text, write_text
 from gearmath.specs.control import ControlSettings
 from gearmath.specs.obstacles import CutterHead, Fixture
+from gearmath.specs.ratio import RADIAN
 from gearmath.specs.toml import Spec, load, parse
 
 #: Order of the axes in every array of positions.
 AXES = "XYZAB"
 #: What a TOML file states an axis in, in the same order, and how many of these make a mm or a rad.
 UNITS = ("mm", "mm", "mm", "degrees", "degrees")
-UNITS_PER_INTERNAL = np.array([1.0, 1.0, 1.0, 180.0 / np.pi, 180.0 / np.pi])
+UNITS_PER_INTERNAL = np.array([1.0, 1.0, 1.0, RADIAN, RADIAN])
 #: The cutter spindle as an axis: where positions have a sixth column, it is this one, in degrees.
 CUTTER_AXIS = "C"
 

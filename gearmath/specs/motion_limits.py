@@ -15,6 +15,8 @@ TRIAL_TEETH = 24
 TRIAL_SPEED = Fraction(1, 10)
 #: Speed up to which a step motor without an encoder has torque for a cut, as a rule of thumb [1/min].
 EASY_MOTOR = 1500
+#: Angular acceleration that no motor of such machines reaches, even without load [rad/s2]: 1.2 Nm over 2.4e-5 kg m2.
+QUICKEST = 50_000.0
 #: Longest time to the speed of a move, and to the step rate [s]; the latter is that of limits.run_up_s.
 LONGEST_RAMP, LONGEST_RUN_UP = 10.0, 600.0
 
@@ -32,6 +34,11 @@ def hurries(machine: HobbingMachine) -> bool:
 def _plain(machine: HobbingMachine) -> bool:
     """Whether it is a step motor that nothing but its steps leads."""
     return machine.drive.pulses is None and not machine.driver.timing.closed_loop
+
+
+def most_acceleration(machine: HobbingMachine) -> int:
+    """The most that limits.acceleration_hz_per_s may be."""
+    return math.floor(QUICKEST * float(machine.drive.pulses_per_turn) / (2.0 * math.pi))
 
 
 def easy_rate(machine: HobbingMachine) -> int:
@@ -83,13 +90,19 @@ def _check_work(machine: HobbingMachine) -> None:
 
 def _check_ramps(machine: HobbingMachine) -> None:
     acceleration = machine.limits.acceleration_hz_per_s
+    turn = 2.0 * math.pi / float(machine.drive.pulses_per_turn)  # rad per step
+    if acceleration * turn > QUICKEST:
+        raise ValueError(
+            f"limits.acceleration_hz_per_s = {acceleration:g}: is {acceleration * turn:.0f} rad/s2 of the motor, and "
+            f"no rotor, even bare, does more than {QUICKEST:.0f}; write at most {most_acceleration(machine)}"
+        )
     for what, rate, most in (
         ("a move", float(machine.move_max_rate), LONGEST_RAMP),
         ("the motor", machine.limits.step_rate_hz, LONGEST_RUN_UP),
     ):
         if rate / acceleration > most:
             raise ValueError(
-                f"limits.acceleration_hz_per_s = {acceleration:g}: {what} needs {rate / acceleration:.3g} s to reach "
+                f"limits.acceleration_hz_per_s = {acceleration:g}: {what} needs {rate / acceleration:.1f} s to reach "
                 f"{rate:g} steps/s, the limit is {most:g} s; at least {math.ceil(rate / most)} is needed"
             )
 

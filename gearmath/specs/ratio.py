@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from fractions import Fraction
 from typing import Annotated
@@ -13,6 +14,8 @@ from gearmath.errors import InputError
 INCH = 25.4  # mm
 #: The same, exactly.
 EXACT_INCH = Fraction(127, 5)
+#: A degree in radians, and a radian in degrees: each rounded once, which the inverse of the other is not.
+DEGREE, RADIAN = math.pi / 180, 180 / math.pi
 
 #: Largest numerator and denominator of a fraction in a file: products of a few of them stay within 63 bits.
 LARGEST = 1_000_000

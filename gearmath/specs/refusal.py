@@ -116,7 +116,7 @@ def _place(model: type[Spec], loc: tuple[int | str, ...]) -> tuple[int | str, ..
             kept.append(part)
         elif at is not None:
             kept.append(part)
-            at = _table(at.model_fields[part].annotation) if part in at.model_fields else None
+            at = table_in(at.model_fields[part].annotation) if part in at.model_fields else None
     return tuple(kept)
 
 
@@ -146,14 +146,14 @@ def _keys(model: type[Spec], place: Sequence[int | str]) -> list[str]:
     for part in place:
         if isinstance(part, int):
             continue  # one table of a list of them
-        at = _table(at.model_fields[part].annotation) if part in at.model_fields else None
+        at = table_in(at.model_fields[part].annotation) if part in at.model_fields else None
         if at is None:
             return []
     return at.keys() if hasattr(at, "keys") else []
 
 
-def _table(annotation: Any) -> type[BaseModel] | None:
+def table_in(annotation: Any) -> type[BaseModel] | None:
     """The model in an annotation such as ``Motion``, ``Design | None`` or ``tuple[Screw, ...]``."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return annotation
-    return next((found for part in get_args(annotation) if (found := _table(part))), None)
+    return next((found for part in get_args(annotation) if (found := table_in(part))), None)

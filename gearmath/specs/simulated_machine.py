@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from derivations import notation
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
 from gearmath.specs.obstacles import CutterHead, Fixture
 from gearmath.specs.toml import Spec, load
@@ -141,7 +142,7 @@ class Probe(Spec):
         return self.sigma_um / 1000 / math.sqrt(self.touches)
 
 
-class SimulatedMachine(Spec):
+class SimulatedMachine(Shown, Spec):
     """Errors of machine, work axis and probe; ``seed`` makes the random ones the same in every run."""
 
     title: str = Field(min_length=1, max_length=200)
@@ -164,6 +165,9 @@ class SimulatedMachine(Spec):
     def measuring_clamp(self, member: str) -> Mounting:
         """How a member sits while it is measured."""
         return self.measuring.pinion if member == "pinion" else self.measuring.gear
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return self.title, [("seed", self.seed, ""), ("probe noise", self.probe.sigma_um, "um")]
 
 
 def load_simulated_machine(path: Path) -> SimulatedMachine:

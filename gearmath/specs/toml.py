@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from gearmath.errors import InputError
 from gearmath.files import read_text
+from gearmath.specs.file_kinds import described, kind_of, of_another_kind
 from gearmath.specs.refusal import sentence
 
 #: So many characters of a line a message shows.
@@ -24,7 +25,8 @@ _SHOWN = 80
 class Spec(BaseModel):
     """Base of every file model: frozen, no unknown keys, no NaN, no silent conversion of text to numbers."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+    # built on first use: a file is of one model, its module has a dozen
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False, defer_build=True)
 
     def rad(self, key: str) -> Any:
         """The angle of a key, or the angles (n,) of a list [rad]; files have degrees."""
@@ -55,6 +57,11 @@ def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     try:
         values = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
+        kind = kind_of(text)
+        if kind is not None and described(model) is not None:
+            raise InputError(
+                f"{name}: is no TOML: it describes {kind}; the file of {described(model)} is wanted"
+            ) from error
         raise InputError(f"{name}: is no TOML: {error}{_line(text, str(error))}") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{name}: is no TOML: a number of thousands of digits, or lists within lists") from error
@@ -88,7 +95,7 @@ def _checked(
     try:
         return validate(values)
     except ValidationError as error:
-        raise InputError(f"{name}: {sentence(error, model)}") from error
+        raise InputError(f"{name}: {of_another_kind(values, model) or sentence(error, model)}") from error
 
 
 def bundled(name: str) -> Path:

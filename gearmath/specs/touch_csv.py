@@ -10,7 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from gearmath.errors import InputError, counted
+from gearmath.files import read_text
 from gearmath.specs.bevel_set import FLANKS, MEMBERS
+from gearmath.specs.file_kinds import TOUCHES, told
 from gearmath.specs.lines import Line, comments, read_lines
 
 COLUMNS = ("run", "point", "member", "flank", "tooth", "row", "col", "X", "Y", "Z", "A", "B", "triggered")
@@ -216,6 +218,9 @@ def _all(path: Path, columns: tuple[str, ...]) -> list[dict]:
     for line in lines:
         if line.cells == other:
             raise line.refuse(f"the touches are on {what}: the columns must be {','.join(columns)}")
+    begun = lines and lines[0].cells in (COLUMNS, CALIBRATION_COLUMNS)
+    if instead := "" if begun else told(read_text(path), TOUCHES):
+        raise InputError(f"{path}: holds no touch{instead}")
     records = [_record(line, columns) for line in lines if line.cells != columns]
     if not records:
         raise InputError(f"{path}: holds no touch; the column line reads {','.join(columns)}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib
 import json
+import math
 import re
 import subprocess
 import sys
@@ -141,6 +142,28 @@ def test_degrees_become_radians_in_specs_and_few_places_that_are_known() -> None
     assert used == set(DEGREES_ARE_READ)
 
 
+def test_the_number_of_a_degree_is_typed_once() -> None:
+    """However it is spelled: pi over 180, its inverse, or their digits. Words of NC programs are texts, not numbers."""
+    typed = set()
+    for path in sorted((ROOT / "gearmath").rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+                ends = {ast.unparse(end).rsplit(".", 1)[-1] for end in (node.left, node.right)}
+                halves = {str(end.value) for end in (node.left, node.right) if isinstance(end, ast.Constant)}
+                spelled = "pi" in ends and bool(halves & {"180", "180.0"})
+            else:
+                number = node.value if isinstance(node, ast.Constant) and isinstance(node.value, float) else 0.0
+                spelled = math.isclose(number, math.pi / 180, rel_tol=1e-4)
+                spelled |= math.isclose(number, 180 / math.pi, rel_tol=1e-4)
+            if spelled or (isinstance(node, ast.Attribute | ast.Name) and _last(node) in ("deg2rad", "rad2deg")):
+                typed.add(path.relative_to(ROOT / "gearmath").as_posix())
+    assert typed == {"specs/ratio.py"}
+
+
+def _last(node: ast.Attribute | ast.Name) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id
+
+
 def _called(node: ast.Call) -> str:
     """The name of what is called, with or without its module."""
     return node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
@@ -208,6 +231,16 @@ def test_links_of_the_documents_lead_somewhere() -> None:
         targets = re.findall(r"\]\(([^)#]+)[^)]*\)", (ROOT / document).read_text("utf-8"))
         local = [target for target in targets if "://" not in target]
         assert [target for target in local if not (ROOT / target).exists()] == [], document
+
+
+def test_readme_asks_what_the_notebooks_ask() -> None:
+    rows = re.findall(
+        r"^\| (.+\?) \| \[\w+\]\(notebooks/(\w+\.ipynb)\) \|$", (ROOT / "README.md").read_text("utf-8"), re.M
+    )
+    first = {path.name: json.loads(path.read_text("utf-8"))["cells"][0]["source"] for path in NOTEBOOKS}
+    assert {name: f"# {question}" for question, name in rows} == {
+        name: "".join(source).splitlines()[0] for name, source in first.items()
+    }
 
 
 def test_readme_shows_every_verb() -> None:

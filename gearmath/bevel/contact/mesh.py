@@ -13,9 +13,10 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from gearmath.bevel.contact.leads import Leads, leads_over_a_pitch
+from gearmath.bevel.contact.changes import changes_of_kind
+from gearmath.bevel.contact.leads import Gap, Leads, gaps_in_the_path, leads_over_a_pitch
 from gearmath.bevel.contact.local import LocalContact, local
-from gearmath.bevel.contact.places import Places, Seed, contact_line, places, seeds
+from gearmath.bevel.contact.places import Places, Seed, contact_line, fillet_seeds, places, seeds
 from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.contact.thread import Segment, Thread, follow, zero
 
@@ -24,6 +25,8 @@ OUTCOMES = (
     "edge contact",
     "corner contact",
     "reversed parabola",
+    "fillet contact",
+    "gap in the path",
     "contact lost",
     "line contact",
 )
@@ -65,20 +68,16 @@ class Mesh:
     threads: tuple[Thread, ...]
     reach: float = REACH
 
+    @cached_property
+    def gaps(self) -> list[Gap]:
+        """Where a contact ends that is ahead of all others, the largest step first: what goes on there is not known."""
+        return gaps_in_the_path(self)
+
     @property
     def carries_at_its_ends(self) -> bool:
-        """Whether a pair of teeth is still ahead of its neighbor where it was no longer followed."""
-        limit, system = self.reach * self.system.pitch, self.system
-        for thread in self.threads:
-            for end in thread.ends:
-                if abs(end) < limit - 1e-9:
-                    continue
-                before = np.array([end, end - math.copysign(system.pitch, end)])
-                own = thread.errors(system, before[:1])[0]
-                others = [one.errors(system, before[1:])[0] for one in self.threads]
-                if all(math.isnan(other) or system.sense * (own - other) > 0 for other in others):
-                    return True
-        return False
+        """Whether a pair of teeth is still ahead of all others where it was no longer followed."""
+        limit = self.reach * self.system.pitch
+        return any(abs(gap.rotation) >= limit - 1e-9 for gap in self.gaps)
 
     @cached_property
     def is_line(self) -> bool:
@@ -129,18 +128,9 @@ class Mesh:
         limit = REACH * self.system.pitch
         count = math.floor(limit / step * (1 + 1e-12))
         rotations = np.arange(-count, count + 1) * step
-        others = [at for at in self.changes if np.abs(rotations - at).min() > 1e-9]
+        changes = changes_of_kind(self.system, self.threads, limit)
+        others = [at for at in changes if np.abs(rotations - at).min() > 1e-9]
         return self.rows(np.sort(np.concatenate([rotations, others])))
-
-    @property
-    def changes(self) -> list[float]:
-        """Rotations [rad] at which the kind of contact of pair 0 changes."""
-        return [
-            after.ends[0]
-            for thread in self.threads
-            for before, after in zip(thread.segments[:-1], thread.segments[1:], strict=True)
-            if before.kind != after.kind
-        ]
 
     @cached_property
     def reference(self) -> float | None:
@@ -198,6 +188,10 @@ class Mesh:
             return "line contact"
         if self.leads.peak_to_peak is None:
             return "contact lost"
+        if self.gaps:
+            return "gap in the path"
+        if "fillet" in self.leads.kinds:
+            return "fillet contact"
         if self.at_mean is not None:
             half_pitch = self.system.pitch / 2
             if self.system.sense * self.at_mean[1].second_derivative * half_pitch**2 / 2 > _REVERSED:
@@ -225,17 +219,17 @@ def mesh(system: System, assembly: Assembly | None = None) -> Mesh:
 def _threads(system: System, found: Places, assembly: np.ndarray, reach: float) -> list[Thread]:
     limit = reach * system.pitch
     rotations = np.linspace(-limit, limit, round(2 * reach * _SOUGHT) + 1)
+    sought = [seed for rotation in sorted(rotations, key=abs) for seed in seeds(found, float(rotation), system.sense)]
     threads: list[Thread] = []
-    for rotation in sorted(rotations, key=abs):
-        for seed in seeds(found, float(rotation), system.sense):
-            if _near(threads, seed):
-                continue
-            touch = system.solve(seed.x, seed.rotation, seed.active, assembly, 12)
-            if touch is None or (touch.margins < -1e-9).any() or _known(system, threads, touch):
-                continue
-            if not touch.active and not local(system, touch, assembly).definite:
-                continue
-            threads.append(follow(system, touch, assembly, -limit, limit))
+    for seed in (*sought, *fillet_seeds(system, found)):
+        if abs(seed.rotation) > limit or _near(threads, seed):
+            continue
+        touch = system.solve(seed.x, seed.rotation, seed.active, assembly, 12)
+        if touch is None or (touch.margins < -1e-9).any() or _known(system, threads, touch):
+            continue
+        if not touch.active and not local(system, touch, assembly).definite:
+            continue
+        threads.append(follow(system, touch, assembly, -limit, limit))
     return threads
 
 

@@ -13,7 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS, ContactSurface
+from gearmath.bevel.contact.surface import BORDERS, ROOT, ContactSurface
 from gearmath.bevel.contact.system import System
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
@@ -22,6 +22,9 @@ from gearmath.kernels import kernel
 _ROWS, _COLUMNS = 9, 17
 #: Which borders of both flanks make an edge.
 _EDGES = np.array([name != "root" for name in BORDERS] * 2)
+_COUNT = len(_EDGES)
+#: Parts of the depth of a fillet: so deep below the root a tip may lie to be tried, from so deep on the fillet at most.
+_REACH, _BEGUN = 3.0, 0.8
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,28 @@ class Seed:
     active: tuple[int, ...]
 
 
+#: Distance [mm] from a border that counts as none.
+ON = 1e-6
+
+
+def on_border(found: Places, which: int, *more: np.ndarray) -> np.ndarray:
+    """Where columns and rows of the grid cross a border: distances from all (n,8), and ``more`` of the grid's values.
+
+    ``more`` (rows, columns, k); a border along which the grid ends is crossed there.
+    """
+    fields = np.concatenate([found.distance, *more], axis=-1)
+    crossings = []
+    for values in (fields, fields.swapaxes(0, 1)):
+        one, other = values[:-1], values[1:]
+        a, b = one[..., which], other[..., which]
+        with np.errstate(invalid="ignore"):
+            crossed = (np.minimum(a, b) <= ON) & (np.maximum(a, b) >= -ON) & (np.abs(a - b) > ON)
+        part = np.clip((a / np.where(a == b, 1.0, a - b))[crossed], 0.0, 1.0)[:, None]
+        crossings.append((1 - part) * one[crossed] + part * other[crossed])
+    line = np.concatenate(crossings)
+    return line[np.isfinite(line).all(axis=1)]
+
+
 def contact_line(found: Places, rotation: float) -> tuple[np.ndarray, ...]:
     """The contact line at a rotation, toe to heel: where it crosses the columns and the rows of the grid.
 
@@ -141,3 +166,21 @@ def seeds(found: Places, rotation: float, sense: float) -> list[Seed]:
         active = (int(np.argmin(np.where(_EDGES, distance[k], np.inf))),) if at_end else ()
         found_seeds.append(Seed(rotation, x[k], active))
     return found_seeds
+
+
+def fillet_seeds(system: System, found: Places) -> list[Seed]:
+    """Start values of the tip edges on their mates' fillets: where a tip passes the root of the mate's flank."""
+    begun = []
+    for side, surface in enumerate((system.pinion, system.gear)):
+        tip, root = len(BORDERS) * (1 - side), len(BORDERS) * side + ROOT
+        if surface.fillet is None or not (found.distance[..., root] < 0).any():
+            continue
+        line = on_border(found, tip, found.x, found.rotation[..., None])
+        distance, x, rotation = line[:, :_COUNT], line[:, _COUNT:-1], line[:, -1]
+        below = surface.below_root(x[:, 3 * side : 3 * side + 3])
+        # a tip that would reach deeper into the flank than the fillet does may still stop on it
+        inside = (np.delete(distance, root, axis=1) > -ON).all(axis=1) & (below > 0) & (below < _REACH * surface.depth)
+        x[:, 3 * side] += (np.minimum(below, _BEGUN * surface.depth) - below) * -surface.borders[ROOT][0]
+        active = tuple(sorted((tip, root)))
+        begun += [Seed(float(rotation[k]), x[k], active) for k in np.flatnonzero(inside)]
+    return sorted(begun, key=lambda seed: abs(seed.rotation))

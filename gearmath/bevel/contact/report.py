@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,13 @@ import numpy as np
 from gearmath.bevel.contact.local import LocalContact, local_at
 from gearmath.bevel.contact.mesh import Mesh, MeshRow, mesh
 from gearmath.bevel.contact.misalignment import contact_at, sensitivities
+from gearmath.bevel.contact.outcome_limits import Change
 from gearmath.bevel.contact.pattern import pattern
-from gearmath.bevel.contact.surface import nominal_surface
+from gearmath.bevel.contact.surface import BORDERS, edges_of, nominal_surface
 from gearmath.bevel.contact.system import Assembly, System, pair_system
-from gearmath.bevel.contact.tolerance import Tolerance
-from gearmath.specs.bevel_set import FLANKS, BevelSet
+from gearmath.bevel.contact.tolerance import EDGES, Tolerance
+from gearmath.shown import Shows
+from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
 
 #: The flank of the pinion that works on each side; the gear's is the other one.
 SIDES = {"drive": "concave", "coast": "convex"}
@@ -40,10 +43,18 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
     zero = run.reference or 0.0
     rows = run.path(step)
     followed = run.followed(np.array([row.rotation for row in rows]))
-    spread = run.leads.peak_to_peak
+    spread = None if run.gaps else run.leads.peak_to_peak
     return {
         "outcome": run.outcome,
         "leading_kinds": list(run.leads.kinds),
+        "on_fillets": on_fillets(run),
+        "gaps": [
+            {
+                "pinion_rotation_deg": _degrees(gap.rotation),
+                "step_arcsec": gap.step * ARCSEC if math.isfinite(gap.step) else None,
+            }
+            for gap in run.gaps
+        ],
         "contact_ratio": run.contact_ratio,
         "at_mean": _at_mean(run, zero),
         "path": [
@@ -62,6 +73,30 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
         "v_h_mm": v_h(run),
     }
+
+
+def on_fillets(run: Mesh) -> list[str]:
+    """Which edges run on the fillet of which mate, in words."""
+    names = {which: edge for edge, which in EDGES.items()}
+    return sorted(
+        {
+            f"{names[edge]} on the {MEMBERS[root // len(BORDERS)]}'s fillet"
+            for active in run.leads.fillets
+            for root in set(active) - set(edges_of(active))
+            for edge in edges_of(active)
+            if edge // len(BORDERS) != root // len(BORDERS)
+        }
+    )
+
+
+def shown_runs(runs: Mapping[str, Mesh]) -> list[Shows]:
+    """What matters most of the sides of a pair, where its record is shown."""
+    shown: list[Shows] = []
+    for side, run in runs.items():
+        spread = run.leads.peak_to_peak
+        shown.append((f"{side}: transmission error", None if spread is None else spread * ARCSEC, "arcsec"))
+    shown += [(f"{side}: contact ratio", run.contact_ratio, "") for side, run in runs.items()]
+    return [*shown, *((f"{side}: outcome", run.outcome, "") for side, run in runs.items())]
 
 
 def _degrees(rotation: float) -> float:
@@ -117,15 +152,20 @@ def v_h(run: Mesh) -> dict[str, list[float] | None]:
     return {name: None if one is None else [one.V, one.H] for name, one in found.items()}
 
 
-def tolerance_figures(found: Tolerance | None) -> dict[str, Any] | None:
-    """The JSON object ``tolerance_mm`` of one side: limits to both senses, by displacement."""
+def tolerance_figures(
+    found: Tolerance | None, changes: dict[str, tuple[Change, Change]] | None = None
+) -> dict[str, Any] | None:
+    """The JSON object ``tolerance_mm`` of one side: limits of the pattern, ``changes`` of the outcome."""
     if found is None:
         return None
-    limits = {
-        name.lower(): {
-            sense: {"value": limit.value, "edge": limit.edge}
-            for sense, limit in zip(("minus", "plus"), both, strict=True)
-        }
-        for name, both in found.limits.items()
+    limits = _both_senses(found.limits, lambda limit: {"value": limit.value, "edge": limit.edge})
+    others = changes and _both_senses(changes, lambda one: {"value": one.value, "outcome": one.outcome})
+    return {"reached": list(found.reached), **limits, "outcome_changes": others}
+
+
+def _both_senses(found: dict[str, tuple[Any, Any]], words: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+    senses = ("minus", "plus")
+    return {
+        name.lower(): {sense: words(one) for sense, one in zip(senses, both, strict=True)}
+        for name, both in found.items()
     }
-    return {"reached": list(found.reached), **limits}

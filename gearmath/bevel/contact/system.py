@@ -15,7 +15,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS, ContactSurface
+from gearmath.bevel.contact.surface import BORDERS, ContactSurface, edges_of, on_fillet
 from gearmath.bevel.turning import half_turn
 from gearmath.engine.points import Points
 from gearmath.errors import ComputationError
@@ -29,10 +29,6 @@ _LIMITS = np.array([3.0, 0.2, 0.2, 3.0, 0.2, 0.2, 0.2])
 _SIDES = 2
 #: Borders of both members: the pinion's, then the gear's.
 COUNT = _SIDES * len(BORDERS)
-
-
-#: Displacement [mm] and growth of the shaft angle [degrees] beyond which no assembly is meant.
-MOST_MM, MOST_DEG = 50.0, 10.0
 
 
 @dataclass(frozen=True)
@@ -69,7 +65,7 @@ class TouchPoint:
     def margins(self) -> np.ndarray:
         """(8,): distance from the other borders, pressure at the active ones; valid where none is negative."""
         values = self.distance.copy()
-        values[list(self.active)] = self.pressure
+        values[list(edges_of(self.active))] = self.pressure
         return values
 
 
@@ -104,20 +100,39 @@ class System:
 
     @cached_property
     def equations(self) -> Points:
-        """x, φ_1, assembly -> every condition (23,) and its derivatives by x and φ_1 (23,8).
+        """x, φ_1, assembly -> every condition (23,) and its derivatives by x and φ_1 (23,8), flank on flank.
 
         In this order: common point (3), f of both (2), alignment (2), tangency of the edges (8), their distance (8).
         """
+        return self._equations((False, False))
+
+    def conditions(self, active: tuple[int, ...]) -> Points | None:
+        """The same at active borders, on a fillet where a root is among them; None without such a fillet."""
+        zones = on_fillet(active)
+        if not any(zones):
+            return self.equations
+        if zones not in self._below:
+            surfaces = (self.pinion, self.gear)
+            lacks = any(below and one.fillet is None for one, below in zip(surfaces, zones, strict=True))
+            self._below[zones] = None if lacks else self._equations(zones)
+        return self._below[zones]
+
+    @cached_property
+    def _below(self) -> dict[tuple[bool, ...], Points | None]:
+        return {}
+
+    def _equations(self, zones: tuple[bool, ...]) -> Points:
         x, rotation, assembly = ca.SX.sym("x", 7), ca.SX.sym("rotation"), ca.SX.sym("assembly", 4)
         points, normals, conditions, distances, edges = [], [], [], [], []
         for side, surface in enumerate((self.pinion, self.gear)):
             w, turn = x[3 * side : 3 * side + 3], (rotation, x[6])[side]
-            point, normal, condition, _ = surface.function(w)
+            function, limits = surface.part(zones[side])
+            point, normal, condition, *_ = function(w)
             conditions.append(condition)
             for border in surface.borders:
                 _, edge = kernel("flank_border").function(w[0], point, normal, ca.DM(border))
                 edges.append((side, self.placed(side, point, edge, turn, assembly)[1]))
-            distances.append(surface.limits(w))
+            distances.append(limits(w))
             point, normal = self.placed(side, point, normal, turn, assembly)
             points.append(point)
             normals.append(normal)
@@ -131,9 +146,11 @@ class System:
         self, x: np.ndarray, rotation: float, active: tuple[int, ...], assembly: np.ndarray, steps: int = _STEPS
     ) -> TouchPoint | None:
         """The contact near ``x`` at a rotation of the pinion, None where Newton's method does not get there."""
-        rows = _rows(active)
+        rows, equations = _rows(active), self.conditions(active)
+        if equations is None:
+            return None
         for _ in range(steps):
-            every, by_all = self.equations.at(x, rotation, assembly)
+            every, by_all = equations.at(x, rotation, assembly)
             r, J = every[rows, 0], by_all[rows]
             if not np.isfinite(J).all():
                 return None
@@ -152,8 +169,11 @@ class System:
     ) -> tuple[np.ndarray, float] | None:
         """The contact at ``active`` borders that comes to one more border: x (7,) and the rotation of the pinion."""
         rows, y = [*_rows(active), 7 + COUNT + border], np.append(x, rotation)
+        equations = self.conditions(active)
+        if equations is None:
+            return None
         for _ in range(_STEPS):
-            every, by_all = self.equations.at(y[:7], y[7], assembly)
+            every, by_all = equations.at(y[:7], y[7], assembly)
             r, J = every[rows, 0], by_all[rows]
             if not np.isfinite(J).all():
                 return None
@@ -176,7 +196,7 @@ class System:
         distance: np.ndarray,
     ) -> TouchPoint:
         # within the borders φ_2 is largest: its derivatives by the last conditions, the distances of the active ones
-        pressure = -self.sense * inverse[6, 7 - len(active) :]
+        pressure = -self.sense * inverse[6, 7 - len(edges_of(active)) :]
         tangent = -(inverse @ J[:, 7])
         return TouchPoint(rotation, x, active, tangent, distance, pressure, float(np.linalg.slogdet(inverse)[0]))
 
@@ -185,9 +205,12 @@ class System:
     ) -> np.ndarray:
         """Contacts (n,7) near ``x`` (n,7) at rotations (n,) in one go, NaN where Newton's method does not get there."""
         rows, n, found = _rows(active), len(x), x.copy()
+        equations = self.conditions(active)
+        if equations is None:
+            return np.full_like(x, np.nan)
         done = np.zeros(n, dtype=bool)
         for _ in range(_STEPS):
-            r, J = self.equations(found, rotation[:, None], assembly)
+            r, J = equations(found, rotation[:, None], assembly)
             r, J = r[:, rows, 0], J[:, rows, :7]
             done = np.abs(r).max(axis=1) < TOLERANCE
             good = np.isfinite(J).all(axis=(1, 2)) & (np.abs(np.linalg.det(np.nan_to_num(J))) > 0)
@@ -261,5 +284,6 @@ _BORDERS = slice(7 + COUNT, 7 + 2 * COUNT)
 
 def _rows(active: tuple[int, ...]) -> list[int]:
     """Which conditions hold: common point and f, with the alignment, an edge with its tangency, or two borders."""
-    edges = [7 + COUNT + border for border in active]
-    return [*range(5), *{0: [5, 6], 1: [7 + border for border in active] + edges, 2: edges}[len(active)]]
+    edges = edges_of(active)
+    on_them = [7 + COUNT + border for border in edges]
+    return [*range(5), *{0: [5, 6], 1: [7 + border for border in edges] + on_them, 2: on_them}[len(edges)]]

@@ -12,11 +12,11 @@ from bisect import bisect_left
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
-from gearmath.bevel.contact.surface import BORDERS
+from gearmath.bevel.contact.cubics import cubic, cubic_of_two, nodes_of
+from gearmath.bevel.contact.surface import BORDERS, ROOT, edges_of, on_fillet
 from gearmath.bevel.contact.system import System, TouchPoint
 
 #: Step of the pinion [rad]: the usual one, and the one below which a contact counts as lost.
@@ -35,6 +35,10 @@ _ZERO = 1e-10
 _PARTS = 24
 
 
+#: Kinds of contact, from what is wanted to what must not be.
+KINDS = ("interior", "edge", "corner", "fillet")
+
+
 @dataclass(frozen=True)
 class Segment:
     """Contacts (at least one) of one kind in the order of the rotation, from end to end."""
@@ -44,11 +48,11 @@ class Segment:
     @cached_property
     def nodes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Rotations (n,), x (n,7) and dx/dφ_1 (n,7) of the contacts."""
-        return _nodes(self.touches)
+        return nodes_of(self.touches)
 
     def between(self, rotations: np.ndarray) -> np.ndarray:
         """x (n,7) at rotations (n,) by Hermite's cubics between the contacts."""
-        return _cubic(self.nodes, rotations)
+        return cubic(self.nodes, rotations)
 
     @cached_property
     def rotations(self) -> list[float]:
@@ -60,7 +64,8 @@ class Segment:
 
     @property
     def kind(self) -> str:
-        """``interior``, ``edge`` (an edge and the mate's flank, or two edges) or ``corner``."""
+        """``interior``, ``edge`` (an edge and the mate's flank, or two edges), ``corner``, or ``fillet``: an edge and
+        the mate's fillet."""
         return kind_of(self.active)
 
     @property
@@ -75,12 +80,15 @@ class Segment:
         if len(self.touches) == 1:
             return None
         k = min(max(bisect_left(self.rotations, rotation), 1), len(self.touches) - 1)
-        guess = _cubic_of_two(self.touches[k - 1], self.touches[k], rotation)
+        guess = cubic_of_two(self.touches[k - 1], self.touches[k], rotation)
         return system.solve(guess, rotation, self.active, assembly)
 
 
 def kind_of(active: tuple[int, ...]) -> str:
     """The kind of a contact at these borders."""
+    edges = edges_of(active)
+    if len(edges) < len(active):
+        return "fillet"
     if not active:
         return "interior"
     return "corner" if len(active) > 1 and len({border // len(BORDERS) for border in active}) == 1 else "edge"
@@ -180,7 +188,7 @@ def _corrected(
     """The contact at a rotation, from the cubic through the last two positions, or from the tangent of one."""
     last = before[-1]
     if len(before) > 1:
-        guess = _cubic_of_two(before[-2], last, rotation)
+        guess = cubic_of_two(before[-2], last, rotation)
     else:
         guess = last.x + (rotation - last.rotation) * last.tangent
     return system.solve(guess, rotation, last.active, assembly, _CORRECTIONS)
@@ -211,7 +219,7 @@ def _border_slowly(
         if abs(high.rotation - low.rotation) < 1e-13 or 0 <= one < _CLOSE:
             break
         rotation = low.rotation + (high.rotation - low.rotation) * one / (one - other)
-        middle = system.solve(_cubic_of_two(low, high, rotation), rotation, inside.active, assembly)
+        middle = system.solve(cubic_of_two(low, high, rotation), rotation, inside.active, assembly)
         if middle is None:
             break
         value = float(middle.margins[which])
@@ -234,17 +242,21 @@ def _next(system: System, end: TouchPoint, assembly: np.ndarray, limit: float) -
     way = 1.0 if limit > end.rotation else -1.0
     if not abs(limit - end.rotation) > 0.0:
         return None
-    margins = end.margins
-    which = int(np.argmin(margins / np.where(np.isin(np.arange(len(margins)), end.active), 1e-4, 1.0)))
-    if which % len(BORDERS) == BORDERS.index("root"):
-        return None
+    margins, edges = end.margins, edges_of(end.active)
+    which = int(np.argmin(margins / np.where(np.isin(np.arange(len(margins)), edges), 1e-4, 1.0)))
+    roots = tuple(border for border in end.active if border not in edges)
     if which in end.active:
         candidates = [tuple(border for border in end.active if border != which)]
-    elif len(end.active) < 2:
-        candidates = [tuple(sorted((*end.active, which))), (which,)]
+    elif which % len(BORDERS) == ROOT:
+        candidates = [(*end.active, which)]
+    elif len(edges) < 2:
+        candidates = [(*end.active, which), (*roots, which)]
     else:
-        candidates = [tuple(sorted((border, which))) for border in end.active]
-    for active in candidates:
+        candidates = [(*roots, border, which) for border in edges]
+    for active in (tuple(sorted(one)) for one in candidates):
+        # a flank does not fit into the narrower fillet of its mate: only an edge does
+        if any(on_fillet(active)) and not edges_of(active):
+            continue
         start = system.solve(end.x, end.rotation, active, assembly)
         if start is None:
             continue
@@ -252,39 +264,6 @@ def _next(system: System, end: TouchPoint, assembly: np.ndarray, limit: float) -
         if probe is not None and (probe.margins >= _SLACK).all():
             return start
     return None
-
-
-def _nodes(touches: Sequence[TouchPoint]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    return (
-        np.array([touch.rotation for touch in touches]),
-        np.stack([touch.x for touch in touches]),
-        np.stack([touch.tangent for touch in touches]),
-    )
-
-
-def _cubic(nodes: tuple[np.ndarray, np.ndarray, np.ndarray], rotations: np.ndarray) -> np.ndarray:
-    """x (n,7) at rotations (n,) by Hermite's cubics between nodes in the order of their rotation; of one, its line."""
-    at, x, slope = nodes
-    if len(at) == 1:
-        return x + (rotations - at)[:, None] * slope
-    k = np.clip(np.searchsorted(at, rotations), 1, len(at) - 1)
-    h = (at[k] - at[k - 1])[:, None]
-    return _hermite((rotations - at[k - 1])[:, None] / h, h, (x[k - 1], slope[k - 1]), (x[k], slope[k]))
-
-
-def _cubic_of_two(one: TouchPoint, other: TouchPoint, rotation: float) -> np.ndarray:
-    """x (7,) at a rotation by Hermite's cubic through two contacts, in either order."""
-    h = other.rotation - one.rotation
-    return _hermite((rotation - one.rotation) / h, h, (one.x, one.tangent), (other.x, other.tangent))
-
-
-def _hermite(t: Any, h: Any, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-    """The cubic at the part ``t`` of the way ``h`` from one value and slope to another."""
-    rest = 1 - t
-    found: np.ndarray = (
-        (1 + 2 * t) * rest**2 * one[0] + t**2 * (3 - 2 * t) * other[0] + h * t * rest * (rest * one[1] - t * other[1])
-    )
-    return found
 
 
 def zero(

@@ -12,7 +12,7 @@ import numpy as np
 from gearmath.bevel.contact.local import MARKING
 from gearmath.bevel.contact.mesh import Mesh, mesh
 from gearmath.bevel.contact.pattern import gaps
-from gearmath.bevel.contact.places import Places, places
+from gearmath.bevel.contact.places import ON, Places, on_border, places
 from gearmath.bevel.contact.surface import BORDERS
 from gearmath.bevel.contact.system import Assembly
 
@@ -29,9 +29,6 @@ _ROWS, _COLUMNS = 41, 41
 #: How often ``tolerance`` tells its progress.
 SEARCHES = 4
 _TRIALS, _CLOSE = 30, 1e-4
-#: Distance [mm] from a border that counts as none.
-_ON = 1e-6
-
 
 #: A clearance [mm] and the edge that has it.
 Beyond = tuple[float, str]
@@ -75,20 +72,10 @@ def clearances(run: Mesh, thickness: float = MARKING) -> dict[str, float]:
 def _least(found: Places, gap: np.ndarray, which: int) -> float:
     """The least gap along a border, from where another border crosses it to where the next does."""
     order = found.cone_distance if BORDERS[which % len(BORDERS)] == "tip" else found.height
-    fields = np.concatenate([found.distance, gap[..., None], order[..., None]], axis=-1)
-    crossings = []
-    for values in (fields, fields.swapaxes(0, 1)):
-        one, other = values[:-1], values[1:]
-        a, b = one[..., which], other[..., which]
-        with np.errstate(invalid="ignore"):
-            crossed = (np.minimum(a, b) <= _ON) & (np.maximum(a, b) >= -_ON) & (np.abs(a - b) > _ON)
-        part = np.clip((a / np.where(a == b, 1.0, a - b))[crossed], 0.0, 1.0)[:, None]
-        crossings.append((1 - part) * one[crossed] + part * other[crossed])
-    line = np.concatenate(crossings)
-    line = line[np.isfinite(line).all(axis=1)]
+    line = on_border(found, which, gap[..., None], order[..., None])
     line = line[np.argsort(line[:, -1], kind="stable")]
     gap, room = line[:, -2], np.delete(line[:, :-2], which, axis=1).min(axis=1, initial=math.inf)
-    inside = room > -_ON
+    inside = room > -ON
     ends = inside[:-1] != inside[1:]
     part = (room[:-1] / np.where(ends, room[:-1] - room[1:], 1.0))[ends]
     at_ends = gap[:-1][ends] + np.clip(part, 0.0, 1.0) * np.diff(gap)[ends]

@@ -8,6 +8,7 @@ from itertools import chain
 from typing import Any
 
 from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.design.given import check_given
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.start import USUAL, Teeth
 from gearmath.bevel.design.verdict import EdgeContact, verdict
@@ -47,6 +48,8 @@ def accepted(data: DesignData, name: str = "design data", given: BevelSet | None
     The figures tell under ``changed`` which keys that the file leaves out have other values than they start from.
     Raises InputError and ComputationError as :func:`design` and :func:`verdict` do, those of the first trial.
     """
+    if given is not None:
+        check_given(given, data, name)
     found, why = _tried(Changed(data), _on_edges(data), name, given)
     if found is None and not all(isinstance(error, EdgeContact) for error in why):
         for changed in _not_cut(data, given):

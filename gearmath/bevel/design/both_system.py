@@ -16,6 +16,7 @@ from derivations import notation
 from gearmath.bevel.design.local_settings import MOVING, ROOT
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.root import FLAT_BLADE
+from gearmath.engine.points import Points
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import FLANKS, MACHINE_SETTINGS, SETTINGS
 
@@ -91,7 +92,7 @@ def _of_flank(x: ca.SX, flank: str) -> tuple[ca.SX, ca.SX, ca.SX]:
 
 
 @cache
-def _at_point(flank: str) -> ca.Function:
+def _at_point(flank: str) -> Points:
     """x, index ratio, blade offset, side, what is wanted -> values (10,) and their derivatives by x."""
     x, w = ca.SX.sym("x", len(NAMES)), ca.SX.sym("w", 3)
     cut = [ca.SX.sym(name) for name in ("index", "offset", "side")]
@@ -117,11 +118,11 @@ def _at_point(flank: str) -> ca.Function:
     )
     values = ca.substitute(values, w, contact)
     given = [x, *cut, P, T, K_2, K, vector, acceleration, lever]
-    return ca.Function("at_point", given, ca.cse([values, ca.densify(ca.jacobian(values, x))]))
+    return Points(ca.Function("at_point", given, ca.cse([values, ca.densify(ca.jacobian(values, x))])))
 
 
 @cache
-def _at_root(flank: str) -> ca.Function:
+def _at_root(flank: str) -> Points:
     """x, index ratio, blade offset, side, cone (3,) -> meshing and cone distance at two places, depths (6,), by x."""
     x, cone = ca.SX.sym("x", len(NAMES)), ca.SX.sym("cone", 3)
     cut = [ca.SX.sym(name) for name in ("index", "offset", "side")]
@@ -134,33 +135,33 @@ def _at_root(flank: str) -> ca.Function:
         values += [meshing / settings[0], along - cone[1 + k]]
         depths.append(deep)
     off = ca.vertcat(*values, *depths)
-    return ca.Function("at_root", [x, *cut, cone], ca.cse([off, ca.densify(ca.jacobian(off, x))]))
+    return Points(ca.Function("at_root", [x, *cut, cone], ca.cse([off, ca.densify(ca.jacobian(off, x))])))
 
 
 def at_point(how: Generation, flank: str, x: np.ndarray, wanted: FlankPoint) -> AtPoint:
     """What the settings of the vector ``x`` (35,) are at the point of a flank."""
-    values, rates = _at_point(flank)(
+    values, rates = _at_point(flank).at(
         x,
         how.index_ratio,
         how.blade_offset_angle,
         how.side,
         wanted.point,
-        wanted.basis,
+        wanted.basis.T,  # column by column
         wanted.gear_curvature,
         wanted.curvature,
         wanted.vector,
         wanted.acceleration,
         wanted.lever,
     )
-    values, rates = np.asarray(values).ravel(), np.asarray(rates)
+    values = values.ravel()
     return AtPoint(values[:6], float(values[6]), values[7:], rates)
 
 
 def at_root(how: Generation, flank: str, x: np.ndarray, cone: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Of the root that the blade of a flank leaves: meshing and cone distance less that of the ``cone`` at two places,
     and the depths [mm] there (6,); derivatives."""
-    values, rates = _at_root(flank)(x, how.index_ratio, how.blade_offset_angle, how.side, cone)
-    return np.asarray(values).ravel(), np.asarray(rates)
+    values, rates = _at_root(flank).at(x, how.index_ratio, how.blade_offset_angle, how.side, cone)
+    return values.ravel(), rates
 
 
 def generation(how: Generation, flank: str, x: np.ndarray) -> Generation:

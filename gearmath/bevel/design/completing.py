@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
 from gearmath.bevel.design import both_system as system
 from gearmath.bevel.design.both_flanks import BothFlanks, FittedBoth, Side, local, moved, of_flank, whole
@@ -22,7 +23,7 @@ from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn, turned
-from gearmath.errors import ComputationError
+from gearmath.errors import ComputationError, InputError
 from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Member
 
 #: Bounds of settings that the fit may move: pressure angles [rad], tilt [rad], 2C and 6D, motion of the
@@ -41,6 +42,15 @@ _OPTIONAL = {
     "modified_roll": ("modified_roll_2", "modified_roll_3"),
     "helical_motion": ("helical_motion",),
 }
+
+#: A cradle angle that the points of both flanks are cut so far from is moved to their middle [rad]; what goes with the
+#: cradle rotation is a polynomial in it: by rising power, an empty name for a coefficient of 1.
+_OFF_CENTER = math.radians(10)
+_ALONG_ROLL = (
+    ("cradle_angle", ""),
+    ("sliding_base", "helical_motion"),
+    ("work_rotation_offset", "ratio_of_roll", "modified_roll_2", "modified_roll_3"),
+)
 
 
 @dataclass(frozen=True)
@@ -78,6 +88,26 @@ class CompletingPinion:
             raise ComputationError(f"pinion: no settings were found with {' and '.join(names)} in steps of the shop")
         return replace(self, problem=problem, fitted=fitted)
 
+    def centered(self) -> CompletingPinion:
+        """The same flanks, with the cradle angle in the middle of where their points are cut, if that lies far off.
+
+        The cradle rotation then counts from elsewhere: what moves with it has the same values as before at every angle.
+        """
+        x = self.fitted.x.copy()
+        off = float(np.mean([x[index("theta", flank)] for flank in FLANKS]))
+        if abs(off) < _OFF_CENTER:
+            return self
+        for own in _ALONG_ROLL:
+            places = [index(name) for name in own if name]
+            known = np.array([x[index(name)] if name else 1.0 for name in own])
+            x[places] = Polynomial(known)(Polynomial([off, 1.0])).coef[: len(places)]
+        for flank in FLANKS:
+            x[[index(name, flank) for name in ("theta", *ROOT[1::2])]] -= off
+        bounds = np.column_stack([np.minimum(self.problem.bounds[:, 0], x), np.maximum(self.problem.bounds[:, 1], x)])
+        contacts = tuple(contact - [0.0, 0.0, off] for contact in self.contacts)
+        problem, fitted = replace(self.problem, bounds=bounds), replace(self.fitted, x=x)
+        return replace(self, problem=problem, fitted=fitted, contacts=contacts)
+
     def with_settings(self, values: Mapping[str, float]) -> CompletingPinion:
         """The pinion with values of ``NAMES`` in place of what was found, nothing else changed."""
         x = self.fitted.x.copy()
@@ -91,7 +121,8 @@ def completing_pinion(
 ) -> CompletingPinion:
     """Both flanks from those of the crown gear, ``start``; ``requests`` by flank, ``backlash`` transverse [mm].
 
-    Raises ComputationError where no settings of one machine give both sides what is asked for.
+    Raises ComputationError where no settings of one machine give both sides what is asked for, InputError where they
+    leave places uncut.
     """
     hows = {flank: generation_of(start, flank) for flank in FLANKS}
     turns = _turns(start, requests, backlash)
@@ -124,10 +155,10 @@ def completing_pinion(
     best = best_way(start, problem, {flank: requests[flank].inner for flank in FLANKS}, found)
     lost = min(best.shares, key=lambda flank: best.shares[flank])
     if not best.shares[lost] >= LEAST_SHARE:
-        raise ComputationError(
-            f"pinion {lost} flank: settings for the mean point were found, but they cut only {best.shares[lost]:.0%} "
-            f"of the places that its mate needs, which must be at least {LEAST_SHARE:.0%}: the others lie below the "
-            "tip of the blade or are undercut"
+        raise InputError(
+            f"{requests[lost].side}: {requests[lost].words}: settings of the pinion's {lost} flank were found for the "
+            f"mean point, but they cut only {best.shares[lost]:.0%} of the places that its mate needs, which must be "
+            f"at least {LEAST_SHARE:.0%}: the others lie below the tip of the blade or are undercut"
         )
     if best.fitted is None:
         raise ComputationError(

@@ -15,6 +15,7 @@ import numpy as np
 from derivations import notation
 from gearmath.bevel.generation import Generation
 from gearmath.bevel.root import FLAT_BLADE
+from gearmath.engine.points import Points
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SETTINGS
 
@@ -84,7 +85,7 @@ class WantedPoint:
 
 
 @cache
-def _system(formate: bool) -> ca.Function:
+def _system(formate: bool) -> Points:
     """x of NAMES, index ratio, blade offset, side, and what is wanted -> residuals (15,) and derivatives by x."""
     x, cone = ca.SX.sym("x", len(NAMES)), ca.SX.sym("cone", 3)
     cut = [ca.SX.sym(name) for name in ("index", "offset", "side")]
@@ -120,7 +121,7 @@ def _system(formate: bool) -> ca.Function:
         roots += [condition(meshing, theta), along - cone[1 + k], deep - depth[k]]
     off = ca.vertcat(flank, *roots)
     given = [x, *cut, cone, P, n, T, K, depth, path]
-    return ca.Function("local_settings", given, ca.cse([off, ca.densify(ca.jacobian(off, x))]))
+    return Points(ca.Function("local_settings", given, ca.cse([off, ca.densify(ca.jacobian(off, x))])))
 
 
 @dataclass(frozen=True)
@@ -139,7 +140,7 @@ class LocalSystem:
 def residual(how: Generation, x: np.ndarray, wanted: WantedPoint) -> tuple[np.ndarray, np.ndarray]:
     """How far settings are off what is wanted (15,), and its derivatives (15,22)."""
     K = wanted.curvature[[0, 0, 1], [0, 1, 1]]
-    off, rates = _system(not how.rolling)(
+    off, rates = _system(not how.rolling).at(
         x,
         how.index_ratio,
         how.blade_offset_angle,
@@ -147,12 +148,12 @@ def residual(how: Generation, x: np.ndarray, wanted: WantedPoint) -> tuple[np.nd
         wanted.cone,
         wanted.point,
         wanted.normal,
-        wanted.basis,
+        wanted.basis.T,  # column by column
         K,
         wanted.depth,
         wanted.path,
     )
-    return np.asarray(off).ravel(), np.asarray(rates)
+    return off.ravel(), rates
 
 
 def solve(how: Generation, x: np.ndarray, wanted: WantedPoint, free: Sequence[str] = UNKNOWN) -> LocalSystem | None:

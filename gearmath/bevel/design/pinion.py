@@ -17,7 +17,7 @@ from gearmath.bevel.generation import Generation, Section, solve_curve, solve_se
 from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.turning import turned
-from gearmath.errors import ComputationError
+from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SETTINGS, SIDES, Member
 from gearmath.specs.cut import ANGULAR
@@ -25,9 +25,12 @@ from gearmath.specs.toml import checked
 
 #: Bounds of what is left free: pressure angle [rad]; 2C and 6D; motion of the sliding base [mm/rad]; tilt [rad].
 _ANGLES = math.radians(10), math.radians(30)
+FLATTEST = _ANGLES[1]
 _ROLL = 0.15, 1.0
 _HELICAL = 5.0
 _TILT = math.radians(12)
+#: Where more than this is left over the whole flank [mm], the length of the ellipse gives way if nobody asked for it.
+_LEFT = 1.5e-3
 #: Least part of the places of the gear's flank that the pinion must cut.
 _LEAST_SHARE = 0.7
 _EXTRA = {
@@ -61,7 +64,7 @@ class PinionFlank:
 def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]) -> PinionFlank:
     """The flank of the pinion from that of the crown gear, ``start``.
 
-    Raises ComputationError where the settings cannot be followed that far.
+    Raises ComputationError where the settings cannot be followed that far, InputError where they leave places uncut.
     """
     how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
     x, begin = _crown_gear(start, how, section, asked)
@@ -79,8 +82,8 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     if found is None:
         raise ComputationError(
             f"pinion {name} flank: no settings were found that give the {asked.side} side its path, parabola and "
-            "pattern at the mean point; ask for a path nearer to 90 degrees, a smaller transmission error, or less "
-            "crowning"
+            f"pattern at the mean point ({asked.words}); ask for a path nearer to 90 degrees, a smaller "
+            "transmission error, or less crowning"
         )
     bounds = _bounds(extra, found.x)
 
@@ -94,18 +97,25 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
     near = found if first is None else first.local
     kept, contact = _reached(how, section, near, asked, np.ones_like(kept))
     if not kept.mean() >= _LEAST_SHARE:
-        raise ComputationError(
-            f"pinion {name} flank: settings for the mean point were found, but they cut only {kept.mean():.0%} of the "
-            f"places that the {asked.side} side needs, which must be at least {_LEAST_SHARE:.0%}: the others lie below "
-            "the tip of the blade or are undercut"
+        raise InputError(
+            f"{asked.side}: {asked.words}: settings of the pinion's {name} flank were found for the mean point, but "
+            f"they cut only {kept.mean():.0%} of the places that the side needs, which must be at least "
+            f"{_LEAST_SHARE:.0%}: the others lie below the tip of the blade or are undercut"
         )
     whole = problem(kept)
     fitted = fit(whole, near, contact)
     if fitted is None:
-        raise ComputationError(
-            f"pinion {name} flank: the settings for the mean point leave parts of the flank uncut; ask for less of the "
-            "flank, or for a smaller transmission error"
+        raise InputError(
+            f"{asked.side}: {asked.words}: the settings for the mean point leave parts of the pinion's {name} flank "
+            "uncut, where none may be; ask for less of the flank, or for a smaller transmission error"
         )
+    if fitted.rms > _LEFT and asked.yielding:
+        # path and parabola stay (26.6); the gap grows too fast towards the ends, and less of it in the middle helps
+        bounds = np.vstack([bounds, [-asked.yielding, 0.0]])
+        longer = replace(whole, extra=(*extra, local.ACROSS), bounds=bounds)
+        better = fit(longer, fitted.local, contact)
+        if better is not None and better.rms < fitted.rms:
+            whole, fitted = longer, better
     return PinionFlank(name, asked, whole, contact, fitted, float(kept.mean()))
 
 
@@ -119,7 +129,9 @@ def refitted(flank: PinionFlank, name: str, value: float) -> PinionFlank:
     if name in problem.extra:
         problem = _without(problem, name)
     elif name in problem.free:
-        problem = replace(problem, free=[*(one for one in problem.free if one != name), local.ACROSS])
+        problem = replace(
+            _without(problem, local.ACROSS), free=[*(one for one in problem.free if one != name), local.ACROSS]
+        )
     x[NAMES.index(name)] = value
     found = local.solve(problem.how, x, problem.wanted, problem.free)
     fitted = None if found is None else fit(problem, found, flank.contact)

@@ -24,6 +24,8 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 _OFF, _STEP = 0.01, 0.01
 #: The distance grows by half to all of what the point is narrower by: each trial takes a little more than is missing.
 _MORE, _TRIALS = 1.1, 10
+#: What a far side cuts is worth a word from here on [mm].
+_GOUGE = 1e-3
 #: Where the flank is flatter than this across the space it is the bottom of the fillet, which the tips share.
 _FLAT = 0.2
 
@@ -39,23 +41,57 @@ def with_point_widths(member: Member, name: str) -> Member:
         return member  # no tooth, of which the verdict says why
     found = {}
     for flank in FLANKS:
-        widest = width = point_width(member, flank, space.slots[flank])
-        least = edge_taken(member, flank) + tip_taken(member.flank(flank), SIDES[flank])
-        for _ in range(_TRIALS):
-            missing = _OFF - room(member, flank, space, width)
-            if missing <= 0:
-                break
-            width = math.floor((width - _MORE * missing) / _STEP) * _STEP
-            if not width > least:
-                raise InputError(
-                    f"{name} {flank} flank: the far side of a cutter with a point width of {least:.3g} mm, the least "
-                    f"that its edges leave, cuts {1000 * (_OFF - room(member, flank, space, least)):.0f} um into the "
-                    f"{opposite(flank)} flank, which must be at most 0; smaller blade_edge_radius, another "
-                    "thickness_factor or cutting = 'completing' is needed"
-                )
+        widest = point_width(member, flank, space.slots[flank])
+        width = _narrow_enough(member, flank, space, widest)
+        if width is None:
+            least = _least_width(member, flank)
+            raise InputError(
+                f"{name} {flank} flank: the far side of a cutter with a point width of {least:.3g} mm, the least "
+                f"that its edges leave, cuts {1000 * (_OFF - room(member, flank, space, least)):.0f} um into the "
+                f"{opposite(flank)} flank, which must be at most 0; smaller blade_edge_radius, another "
+                "thickness_factor or cutting = 'completing' is needed"
+            )
         if width < widest:
             found[flank] = member.flank(flank).model_copy(update={"blade_point_width": width})
     return member.model_copy(update=found)
+
+
+def far_sides_note(member: Member, space: ToothSpace) -> str:
+    """What to say of cutters for one flank whose far side cuts into the other one; empty where none does."""
+    if member.cutting != "fixed_setting":
+        return ""
+    said = []
+    for flank in FLANKS:
+        width = point_width(member, flank, space.slots[flank])
+        left = room(member, flank, space, width)
+        if left >= -_GOUGE:
+            continue
+        enough = _narrow_enough(member, flank, space, width)
+        chosen = "" if member.flank(flank).blade_point_width is not None else ", chosen for the slot,"
+        said.append(
+            f"the far side of the {flank} flank's cutter of {width:.3f} mm point width{chosen} cuts {-1000 * left:.0f} "
+            f"um into the {opposite(flank)} flank: blade_point_width must be "
+            + (f"at most {enough:.2f} mm" if enough is not None else "less than its edges leave")
+        )
+    return "; ".join(said)
+
+
+def _narrow_enough(member: Member, flank: str, space: ToothSpace, width: float) -> float | None:
+    """The point width [mm], or the next narrower one whose far side stays off the other flank; None where none does."""
+    least = _least_width(member, flank)
+    for _ in range(_TRIALS):
+        missing = _OFF - room(member, flank, space, width)
+        if missing <= 0:
+            break
+        width = math.floor((width - _MORE * missing) / _STEP) * _STEP
+        if not width > least:
+            return None
+    return width
+
+
+def _least_width(member: Member, flank: str) -> float:
+    """The point width [mm] that the rounded edges of both sides of a cutter take."""
+    return edge_taken(member, flank) + tip_taken(member.flank(flank), SIDES[flank])
 
 
 def room(member: Member, flank: str, space: ToothSpace, width: float) -> float:

@@ -24,6 +24,8 @@ _TRIED = (0.2, 0.8, 7)
 _INNER = 0.3
 #: Path on the gear where none is asked for [degree]: it leans as lets one pair of teeth touch longest.
 _PATH = {"drive": math.radians(50), "coast": math.radians(130)}
+#: An ellipse whose length nobody asked for may get longer by this part of it.
+_LONGER = 0.1
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,9 @@ class Request:
     ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear,
     ``own_path`` on the pinion [rad]; ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm];
     ``roll`` of chapter 26; ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the pinion's tip
-    reaches; ``inner`` (n,) are those about the middle.
+    reaches; ``inner`` (n,) are those about the middle. ``yielding`` is what the curvature across the path may lose
+    [1/mm] where the whole flank needs it: nothing if the length of the ellipse is asked for. ``words`` are the keys of
+    what is asked.
     """
 
     side: str
@@ -49,6 +53,8 @@ class Request:
     meeting: Meeting
     gap: np.ndarray
     inner: np.ndarray
+    yielding: float
+    words: str
 
 
 def request(
@@ -80,8 +86,10 @@ def request(
         own = float(kernel("path_on_pinion")(*given, roll.sliding, parabola, path)[0])
         (D,) = kernel("synthesis")(*given, own, parabola, semi_axis, MARKING)
         _check_ellipse(side, asked, matrix(D), own, surface.blank.face_width)
+        yielding = _yielding(asked, w, given[1:], own, parabola, semi_axis)
     else:
         D, own, path, parabola, semi_axis = _crowned(asked, roll, surface.blank)
+        yielding = 0.0
     meeting, places, along, inner = _flank(gear, roll, lowest)
     if asked.lengthwise_crowning is None:
         lever = np.full(len(along), abs(roll.lever))
@@ -103,7 +111,38 @@ def request(
         meeting,
         gap,
         inner,
+        yielding,
+        _words(asked, path),
     )
+
+
+def _words(asked: ContactRequest, path: float) -> str:
+    """The keys of what is asked of a side, with their values."""
+    names = ["lengthwise_crowning", "profile_crowning", "bias"]
+    given = {name: getattr(asked, name) for name in names}
+    if asked.lengthwise_crowning is None:
+        given = {
+            "transmission_error": asked.transmission_error,
+            "path_angle": math.degrees(path),
+            "pattern_length": asked.pattern_length,
+        }
+    said = [f"{name} = {value:.6g}" for name, value in given.items()]
+    if asked.position is not None:
+        said.append(f"position = [{asked.position[0]:g}, {asked.position[1]:g}]")
+    return ", ".join(said)
+
+
+def _yielding(
+    asked: ContactRequest, w: np.ndarray, roll: tuple[float, float], own: float, parabola: float, semi_axis: float
+) -> float:
+    """What the curvature across the path loses [1/mm] where the ellipse gets as much longer as it may."""
+    if "pattern_length" in asked.model_fields_set:
+        return 0.0
+    axes = np.array([semi_axis, (1 + _LONGER) * semi_axis])
+    here, there = (
+        matrix(kernel("synthesis")(w, *roll, own, parabola, float(axis), MARKING)[0]).trace() for axis in axes
+    )
+    return float(here - there)
 
 
 def _crowned(asked: ContactRequest, roll: Roll, blank: Blank) -> tuple[np.ndarray, float, float, float, float]:

@@ -61,7 +61,7 @@ def rounded_pinion(flank: PinionFlank, shop: Shop) -> PinionFlank:
 
 
 def rounded_completing(pinion: CompletingPinion, shop: Shop) -> CompletingPinion:
-    """Both flanks of a pinion that is cut completing with all settings in steps; the work rotation offset is none."""
+    """Both flanks of a pinion that is cut completing with all settings in steps but the work rotation offset."""
     x, steps = pinion.fitted.x, {name: step_of(name, shop) for name in _BLADE}
     own = [f"{flank}.{name}" for flank in FLANKS for name, step in steps.items() if step]
     places = [both_system.NAMES.index(name) for name in own]

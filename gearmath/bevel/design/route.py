@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearmath.bevel.blank import BevelBlank
+from gearmath.bevel.check_blade import check_edge
 from gearmath.bevel.check_blank import check_blank
 from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
@@ -13,13 +14,14 @@ from gearmath.bevel.crown_gear import Method, crown_gear_set
 from gearmath.bevel.design.backlash import completing_backlash, with_backlash
 from gearmath.bevel.design.completing import completing_pinion
 from gearmath.bevel.design.designed_flank import DesignedFlank
-from gearmath.bevel.design.pinion import PinionFlank, pinion_flank, settings_table, with_flank
+from gearmath.bevel.design.pinion import FLATTEST, PinionFlank, pinion_flank, settings_table, with_flank
 from gearmath.bevel.design.point_widths import with_point_widths
 from gearmath.bevel.design.request import Request, gear_flank, request
 from gearmath.bevel.design.rounding import rounded_completing, rounded_gear, rounded_pinion
 from gearmath.bevel.design.start import USUAL, Teeth, blank_for, edge_radius
 from gearmath.bevel.design.tip_edges import with_edge, with_room_for_tips
 from gearmath.bevel.design.tip_heights import with_tip_heights
+from gearmath.bevel.pair import check_computed
 from gearmath.bevel.slots import slots_of
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.errors import InputError
@@ -29,7 +31,6 @@ from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
 
 #: Face widths are the same within this, for sheets in inches are rounded.
-_SAME_WIDTH = 1e-3
 
 Flanks = dict[str, PinionFlank | DesignedFlank]
 
@@ -65,12 +66,7 @@ def design(
             "cut at once"
         )
     blank_data, blank = blank_for(data, name, teeth)
-    start = crown_gear_set(
-        blank_data,
-        Method("completing", alternating=True) if completing else _single(data, blank),
-        Method("completing", data.gear.generation, alternating=True),
-        data.hand,
-    )
+    start = _crown_gear(data, blank_data, blank)
     for member in ("pinion", "gear"):
         check_blank(start.member(member), member)  # before anything is computed for it
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
@@ -79,15 +75,21 @@ def design(
         member: edge_radius(given_edges[member], own, blank.clearance)
         for member, own in (("pinion", slots.pinion), ("gear", slots.wheel))
     }
+    # the fit may still make the blades of the pinion as flat as that
+    check_edge("pinion", rounds["pinion"], FLATTEST, blank.clearance)
+    if given is None:
+        flattest = max(start.member("gear").flank(flank).alpha for flank in FLANKS)
+        check_edge("gear", rounds["gear"], flattest, blank.clearance)
     pinion, gear = (with_edge(start.member(member), rounds[member]) for member in ("pinion", "gear"))
     gear = rounded_gear(gear, data.shop)
     if gear.process == "face_hobbing" and data.gear.blade_edge_radius is None:
         gear = with_room_for_tips(gear)
     if given is not None:
-        _check_of(given, pinion, gear, name)
         pinion, gear = pinion.model_copy(update={"blank": given.member("pinion").blank}), given.member("gear")
         if data.backlash is None:
             backlash = mean_backlash(given.member("pinion"), gear)
+    else:
+        _check_gear(start, gear)
     requests = {side: _asked(data, side, pinion, gear, start.shaft_angle, along) for side in OWN}
     if completing:
         found, flanks = _at_once(data, requests, pinion, gear, backlash)
@@ -95,6 +97,36 @@ def design(
         found, flanks = _one_by_one(data, requests, pinion, gear, backlash)
     pair = start.model_copy(update={"pinion": found, "gear": gear})
     return Designed(data, pair, flanks, backlash, blank_data)
+
+
+def _crown_gear(data: DesignData, blank_data: BlankData, blank: BevelBlank) -> BevelSet:
+    """The pair of the crown gear. Raises InputError with the key of the data from which a setting follows that is
+    beyond what a set may have."""
+    try:
+        return crown_gear_set(
+            blank_data,
+            _single(data, blank) if data.pinion.cutting == "fixed_setting" else Method("completing", alternating=True),
+            Method("completing", data.gear.generation, alternating=True),
+            data.hand,
+        )
+    except InputError as error:
+        said = str(error)
+        if "blade_point_radius" in said:
+            raise InputError(f"cutter.cutter_radius = {blank_data.cutter.cutter_radius:g}: {said}") from error
+        if ("blade_pressure_angle" in said or said.startswith("tilt")) and data.pinion.cutter_tilt:
+            raise InputError(f"pinion.cutter_tilt = {data.pinion.cutter_tilt:g}: {said}") from error
+        raise
+
+
+def _check_gear(start: BevelSet, gear: Member) -> None:
+    """Refuse a gear that is no member of a pair before a pinion is sought for it."""
+    try:
+        check_computed(start.model_copy(update={"pinion": None, "gear": gear}))
+    except InputError as error:
+        raise InputError(
+            f"the gear that was found is refused: {error}; another mean_addendum_factor, thickness_factor, pressure "
+            "angle, cutter_radius or generation of the gear is needed"
+        ) from error
 
 
 def _asked(data: DesignData, side: str, pinion: Member, gear: Member, shaft_angle: float, along: float) -> Request:
@@ -121,7 +153,8 @@ def _at_once(
 ) -> tuple[Member, Flanks]:
     """The pinion, both flanks with the settings of one machine."""
     own = {OWN[side]: asked for side, asked in requests.items()}
-    both = rounded_completing(completing_pinion(start, own, data.pinion.may_change, backlash), data.shop)
+    found_for_both = completing_pinion(start, own, data.pinion.may_change, backlash).centered()
+    both = rounded_completing(found_for_both, data.shop)
     flanks = {side: both.flank(name) for side, name in OWN.items()}
     values = start.model_dump()
     for flank in flanks.values():
@@ -147,20 +180,3 @@ def _tilt(data: DesignData, blank: BevelBlank) -> float:
     if data.pinion.cutter_tilt is not None:
         return data.pinion.rad("cutter_tilt")
     return blank.dedendum_angle_sum if data.gear.generation == "formate" else 0.0
-
-
-def _check_of(given: BevelSet, pinion: Member, gear: Member, name: str) -> None:
-    """Raises InputError where the data, of which the crown gear's members are, say something else than a given set."""
-    set_pinion, set_gear = given.member("pinion"), given.member("gear")
-    for key, of_data, of_set in (
-        ("pinion_teeth", pinion.teeth, set_pinion.teeth),
-        ("wheel_teeth", gear.teeth, set_gear.teeth),
-        ("hand", pinion.hand, set_pinion.hand),
-        ("cutter.process", gear.process, set_gear.process),
-        ("gear.generation", gear.generation, set_gear.generation),
-    ):
-        if of_data != of_set:
-            raise InputError(f"{name}: {key} = {of_data!r}: must be {of_set!r}, as the set has it")
-    width, set_width = pinion.blank.face_width, set_pinion.blank.face_width
-    if not math.isclose(width, set_width, rel_tol=_SAME_WIDTH):
-        raise InputError(f"{name}: face_width of {width:g} mm: must be {set_width:g} mm, as the set has it")

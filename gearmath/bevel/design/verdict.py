@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,10 +13,11 @@ from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.report import ARCSEC, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
+from gearmath.bevel.design.local_settings import ACROSS
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.grid import over_reach
-from gearmath.bevel.pair import check_pair
+from gearmath.bevel.pair import check_computed
 from gearmath.bevel.ridge import ridge
 from gearmath.bevel.tooth import mean_backlash, space_widths, tooth_space
 from gearmath.errors import InputError
@@ -94,15 +94,15 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
 
     Raises InputError with the limit that is broken: the pair is none, runs on edges, or has too thin a tooth.
     """
+    stepped = any(made.data.shop.model_dump().values())
     try:
-        check_pair(made.pair)
+        check_computed(made.pair)
     except InputError as error:
-        said = re.sub(r"; (no single setting|the setting that alone).*", "", str(error))
+        finer = "finer steps in [shop], " * stepped
         raise InputError(
-            f"the pair that was found is refused: {said}; another mean_addendum_factor, thickness_factor, pressure "
-            "angle, cutter_radius or method of the gear is needed"
+            f"the pair that was found is refused: {error}; {finer}another mean_addendum_factor, thickness_factor, "
+            "pressure angle, cutter_radius or method of the gear is needed"
         ) from error
-    runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
     pinion, gear = made.pair.member("pinion"), made.pair.member("gear")
     module = mean_module(made)
     lands = {name: top_land(member, name) for name, member in (("pinion", pinion), ("gear", gear))}
@@ -128,7 +128,7 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         "undercut_mm": cuts,
         "root_ridge_um": {name: 1000 * one if math.isfinite(one) else None for name, one in ridges.items()},
     }
-    stepped = any(made.data.shop.model_dump().values())
+    runs = {side: side_mesh(made.pair, side, Assembly()) for side in made.flanks}
     for side, run in runs.items():
         figures[side] = _side(made, side, run, stepped)
     return figures, runs
@@ -189,7 +189,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             "position must be given, or the path come nearer to 90 degrees"
         )
     if run.outcome != "interior contact" or found is None:
-        changes = (
+        changes: tuple[str, ...] = (
             (
                 f"a smaller profile_crowning (now {asked.profile_crowning:g} um)",
                 f"another bias (now {asked.bias:g} um)",
@@ -201,7 +201,10 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
                 f"a smaller transmission_error (now {asked.transmission_error:g} arcsec)",
                 f"a shorter pattern_length (now {asked.pattern_length:g})",
             )
-        ) + ("finer steps in [shop]",) * stepped
+        )
+        if asked.position is not None:
+            changes += (f"a position nearer to the middle (now {asked.position[0]:g}, {asked.position[1]:g})",)
+        changes += ("finer steps in [shop]",) * stepped
         raise EdgeContact(
             f"{side}: {run.outcome}: one pair of teeth does not take over from the next within the flanks, where the "
             f"contact ratio is {run.contact_ratio:.3g}: {', '.join(changes[:-1])} or {changes[-1]} is needed"
@@ -232,7 +235,7 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
         "semi_axes_mm": {"asked_major": flank.request.semi_axis, "found": list(found.local.semi_axes)},
         "ease_off_rms_um": flank.fitted.rms * 1000,
         "share_of_flank": flank.share,
-        "bounds_reached": list(flank.fitted.active),
+        "bounds_reached": ["pattern_length" if one == ACROSS else one for one in flank.fitted.active],
     }
 
 

@@ -11,6 +11,7 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.gearbox.helix import Helix
 from gearmath.gearbox.hobbed.classes import COARSEST, FINEST, NOT_CONFIRMED, outside
 from gearmath.gearbox.hobbed.setup import CutSetup, VirtualGear, blame, cut_and_inspect, ridges, setup
+from gearmath.shown import Shown, Shows
 from gearmath.specs.cutting_errors import CuttingErrors
 from gearmath.specs.hob import Hob
 from gearmath.specs.hobbing import HobbingMachine
@@ -38,8 +39,8 @@ class ChosenParts:
     feed: float
 
 
-@dataclass(frozen=True)
-class Choice:
+@dataclass(frozen=True, repr=False)
+class Choice(Shown):
     """Parts that reach a class, the gear that they cut, and the highest speed of the hob with them [1/min]."""
 
     wanted: int
@@ -59,6 +60,18 @@ class Choice:
             "figures": [asdict(row) for row in self.gear.classes],
             "tolerances": NOT_CONFIRMED,
         }
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        parts = self.parts
+        return f"parts for class {self.wanted}", [
+            ("microsteps", parts.microsteps, ""),
+            ("encoder lines", parts.lines, ""),
+            ("gashes", parts.gashes, ""),
+            ("feed", parts.feed, "mm per turn of the table"),
+            ("highest speed", self.rpm, "rpm"),
+            ("class reached", self.gear.accuracy_class, ""),
+            ("cuts tried", self.tried, ""),
+        ]
 
 
 @dataclass(frozen=True)

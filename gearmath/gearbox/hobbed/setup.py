@@ -18,6 +18,7 @@ from gearmath.gearbox.hobbed.inspection import Inspection, Layout, inspect, layo
 from gearmath.gearbox.hobbed.job import HobbingJob, HobTool
 from gearmath.gearbox.kernels import evaluate
 from gearmath.gearbox.train import plan
+from gearmath.shown import Shown, Shows
 from gearmath.specs.hobbing import Hob, HobbingMachine
 
 #: Face width where none is given, in modules.
@@ -27,8 +28,8 @@ MOST_SHIFT = 500.0  # of the hob along its axis [mm]
 LONGEST_SECONDS = 86_400.0
 
 
-@dataclass(frozen=True)
-class VirtualGear:
+@dataclass(frozen=True, repr=False)
+class VirtualGear(Shown):
     """A gear cut by one rule, inspected."""
 
     rule: Rule
@@ -39,6 +40,13 @@ class VirtualGear:
     def accuracy_class(self) -> int | None:
         """The coarsest class of all figures."""
         return overall(self.classes)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [("class", self.accuracy_class, "")]
+        return f"gear cut by the {self.rule} rule", [
+            *figures,
+            *((one.figure, one.value_um, "um") for one in self.classes),
+        ]
 
 
 @dataclass(frozen=True)

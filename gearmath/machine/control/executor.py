@@ -15,14 +15,15 @@ from gearmath.machine.control.runner import Halt, Host, StatementRunner, Stopped
 from gearmath.machine.control.state import Blind, Deflected, Follower, Probe, Setup
 from gearmath.machine.control.text import is_for_linuxcnc
 from gearmath.machine.control.tree import ParsedProgram
+from gearmath.shown import Shown, Shows
 
 #: Blocks and turns of loops that a program may run through.
 STEP_LIMIT = 1_000_000
 _KEPT: dict[str, ParsedProgram] = {}
 
 
-@dataclass(frozen=True)
-class MachinePath:
+@dataclass(frozen=True, repr=False)
+class MachinePath(Shown):
     """What a program commands, one row for each motion block that ends at a known position of all five axes.
 
     A block of POLY has many rows: it is followed in straight parts, so short that they are it within ``CHORD``.
@@ -70,6 +71,10 @@ class MachinePath:
     def spindle_on(self) -> np.ndarray:
         """Whether the spindle turns, (n,)."""
         return self.rpm != 0.0
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        feed, rapid = float(self.seconds.sum()), int(self.rapid.sum())
+        return "path of a program", [("rows", len(self.axes), ""), ("rapid", rapid, ""), ("feed", feed, "s")]
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple, NoReturn
@@ -14,6 +13,7 @@ from gearmath.machine.control.polynomial import INTERVAL
 from gearmath.machine.control.tree import Block, Word
 from gearmath.machine.control.vocabulary import GROUP_OF_CODE
 from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.ratio import RADIAN
 
 #: Moves the probe from one position of X Y Z A B to another, (5,) mm and rad: where it triggers, or None.
 Probe = Callable[[np.ndarray, np.ndarray], np.ndarray | None]
@@ -30,7 +30,7 @@ _GROUPS = frozenset(GROUP_OF_CODE.values())
 _MOVED = frozenset(AXES + CUTTER_AXIS)
 _VALUED = ("F", "S", "D", "SPOS", "ADIS", "ADISPOS", "MEAS", "CTOL", "OTOL", "PL")
 #: Radius [mm] at which one degree is one millimetre: what F means for a rotary axis of FGROUP.
-DEGREE_IS_MM = 180.0 / math.pi
+DEGREE_IS_MM = RADIAN
 
 
 @dataclass(frozen=True)

@@ -14,13 +14,14 @@ from gearmath.machine.judging.cut import as_cut
 from gearmath.machine.judging.timing import Timing, timing
 from gearmath.machine.milling.run import runs_of
 from gearmath.machine.milling.surfaces import DEFAULT_COLUMNS, DEFAULT_TOLERANCE, SurfaceState, surface_states
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 
-@dataclass(frozen=True)
-class MillingReport:
+@dataclass(frozen=True, repr=False)
+class MillingReport(Shown):
     """Everything that a program does to a member and to the machine; lengths in mm.
 
     On flanks ``flank_tolerance`` is the limit, on fillets and roots ``tolerance``.
@@ -54,6 +55,18 @@ class MillingReport:
     def as_dict(self) -> dict[str, object]:
         """For JSON."""
         return asdict(self)
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [
+            ("surfaces gouged", len(self.gouges), f"of {len(self.judged)}"),
+            ("with metal left", len(self.uncut), f"of {len(self.judged)}"),
+            ("collisions", len(self.collisions), ""),
+            ("feed", self.timing.feed_seconds, "s"),
+            ("rapid motion", self.timing.rapid_seconds, "s"),
+            ("tolerance", 1000 * self.tolerance, "um"),
+            ("tolerance of flanks", 1000 * self.flank_tolerance, "um"),
+        ]
+        return f"what a program does to the {self.member}", figures
 
 
 def milling_report(

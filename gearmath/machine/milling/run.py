@@ -23,6 +23,7 @@ from gearmath.machine.milling.axis_errors import (
     with_setting_errors,
 )
 from gearmath.machine.planning.path import Cut, axis_positions, roll_range
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import Member
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.simulated_machine import SimulatedMachine
@@ -31,8 +32,8 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 _NOMINAL_POSITIONS = 201
 
 
-@dataclass(frozen=True)
-class CuttingRun:
+@dataclass(frozen=True, repr=False)
+class CuttingRun(Shown):
     """The blocks of one tool: real axis positions (n,5), which of them cut (n,), and the space (n,) of each, or -1.
 
     ``line`` (n,) is the number of the line in the program text; ``inner`` (n,) says which rows end within a block of
@@ -61,6 +62,13 @@ class CuttingRun:
         if self.blades is not None:
             return list(range(self.blades.teeth))
         return list(dict.fromkeys(self.space[self.space >= 0].tolist()))
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return f"blocks of one tool, {' and '.join(self.cut.flanks)} flank", [
+            ("rows", len(self.axes), ""),
+            ("cutting", int(self.cutting.sum()), ""),
+            ("spaces", len(self.spaces), ""),
+        ]
 
 
 def runs_of(

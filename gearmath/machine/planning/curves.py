@@ -24,10 +24,11 @@ from gearmath.machine.planning.feeds import SHORTEST, check_feed
 from gearmath.machine.planning.path import Cut, axis_positions, roll_range
 from gearmath.specs.bevel_set import Flank, Member
 from gearmath.specs.milling_machine import MillingMachine
+from gearmath.specs.ratio import RADIAN
 
 CUBIC, QUINTIC = 3, 5
 #: Radius at which F counts A and B, so that a degree is a mm: FGREF of a new control. [mm]
-FEED_RADIUS = 180.0 / math.pi
+FEED_RADIUS = RADIAN
 _AXES = 5
 #: No block rolls further. [rad]
 _LONGEST = math.radians(40.0)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from gearmath.specs.ratio import RADIAN
+
 #: Straight parts that stand for a polynomial where its ends do not tell enough.
 _PARTS = 64
 
@@ -46,7 +48,7 @@ class Pass:
         higher = u[:, None] ** np.arange(2, 2 + self.bends.shape[2])
         ends = np.diff(self.axes, axis=0) - self.bends.sum(axis=2)
         where = self.axes[:-1, None] + u[:, None] * ends[:, None] + np.einsum("uk,nak->nua", higher, self.bends)
-        weights = np.where(np.arange(where.shape[2]) < 3, 1.0, 180.0 / math.pi)
+        weights = np.where(np.arange(where.shape[2]) < 3, 1.0, RADIAN)
         steps = np.linalg.norm(np.diff(where, axis=1) * weights, axis=2)
         seconds = steps / steps.sum(axis=1, keepdims=True) * self.seconds[:, None]
         theta = self.theta[:-1, None] + u[1:] * np.diff(self.theta)[:, None]

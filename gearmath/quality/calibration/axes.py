@@ -13,6 +13,7 @@ from gearmath.errors import InputError, counted
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import lobing, probe_height
 from gearmath.quality.calibration.tip import Fit, least_squares, with_gradient
+from gearmath.shown import Shown, Shows
 from gearmath.specs.calibration import Calibration
 from gearmath.specs.milling_machine import MillingMachine
 from gearmath.specs.touch_csv import WORK_SPHERE, CalibrationTouches
@@ -22,8 +23,8 @@ _UNKNOWNS = 8
 _LEAST_TOUCHES = 20
 
 
-@dataclass(frozen=True)
-class AxisCalibration:
+@dataclass(frozen=True, repr=False)
+class AxisCalibration(Shown):
     """Where the rotary axes are, each with its standard uncertainty in ``fit.uncertainty`` [mm, rad].
 
     ``pivot_offset`` (3,) and ``gauge_line_height`` are those of the machine file. ``x_zero`` is where the axis B lies,
@@ -45,6 +46,16 @@ class AxisCalibration:
         """[rad]"""
         across = np.array([-math.sin(self.azimuth), math.cos(self.azimuth)]) / self.radius
         return float(math.sqrt(across @ self.fit.covariance[6:, 6:] @ across))
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        u = self.fit.uncertainty
+        return "calibrated rotary axes", [
+            ("pivot offset", self.pivot_offset.tolist(), "mm"),
+            ("B at X", self.x_zero, "mm"),
+            ("B stands beyond its reading by", math.degrees(self.b_zero), "degrees"),
+            ("u of the pivot offset", (1000 * u[:3]).tolist(), "um"),
+            ("gauge line height", self.gauge_line_height, "mm"),
+        ]
 
 
 def calibrate_axes(touches: CalibrationTouches, machine: MillingMachine, calibration: Calibration) -> AxisCalibration:

@@ -15,6 +15,7 @@ from gearmath.engine.kernel import Kernel
 from gearmath.errors import ComputationError, InputError, counted
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import lobing
+from gearmath.shown import Shown, Shows
 from gearmath.specs.calibration import Calibration, Face, Ring, Sphere
 from gearmath.specs.touch_csv import RING, RING_FACE, SPHERE, CalibrationTouches
 
@@ -56,8 +57,8 @@ class Fit:
         return np.sqrt(np.diag(self.covariance))
 
 
-@dataclass(frozen=True)
-class Tip:
+@dataclass(frozen=True, repr=False)
+class Tip(Shown):
     """A calibrated tip: effective radius and offset (3,) [mm], amplitude [mm] and azimuth [rad] of its lobes.
 
     ``fit`` has the values radius, offset and, where they were asked for, the two components of the lobes. A Z that no
@@ -83,6 +84,16 @@ class Tip:
     def residual(self) -> float:
         """The largest in size [mm]."""
         return float(np.abs(self.fit.residuals).max())
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        return "calibrated tip", [
+            ("radius", self.radius, "mm"),
+            ("u of the radius", 1000 * self.radius_uncertainty, "um"),
+            ("largest residual", 1000 * self.residual, "um"),
+            ("offset", self.offset.tolist(), "mm"),
+            ("u of the offset", (1000 * self.offset_uncertainty).tolist(), "um"),
+            ("lobes", 1000 * self.lobes[0], "um"),
+        ]
 
 
 def calibrate_on_sphere(touches: CalibrationTouches, sphere: Sphere, start: Calibration, lobes: bool = False) -> Tip:

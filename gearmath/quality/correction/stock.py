@@ -7,6 +7,7 @@ both flanks share. An advance gives stock to both flanks and takes depth; it is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -16,6 +17,7 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
 from gearmath.quality.evaluation.file_checks import check_belongs, check_points
 from gearmath.quality.evaluation.nominal import nominal_rows
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.flank_csv import FlankFile
 
@@ -26,8 +28,8 @@ _ADVANCE, _TURN = 2, 5
 _HALVINGS = 80
 
 
-@dataclass(frozen=True)
-class Stock:
+@dataclass(frozen=True, repr=False)
+class Stock(Shown):
     """How the work is turned [rad] and advanced [mm], and by flank its least, mean and most stock [mm] there.
 
     ``least_before`` is what there is as the work stands now. The turn is right-handed about the work's axis from toe to
@@ -41,6 +43,12 @@ class Stock:
     mean: dict[str, float]
     most: dict[str, float]
     least_before: dict[str, float]
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [("turn", math.degrees(self.turn), "degrees"), ("advance", self.advance, "mm")]
+        parts = ("least", self.least), ("mean", self.mean), ("most", self.most), ("least before", self.least_before)
+        figures += [(f"{name}, {flank}", value, "mm") for name, by in parts for flank, value in by.items()]
+        return "how the blank must stand", figures
 
 
 def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = False, least: float = 0.0) -> Stock:

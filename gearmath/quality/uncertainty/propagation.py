@@ -24,6 +24,7 @@ import numpy as np
 from gearmath.quality.uncertainty.covariance import Covariance, coverage_factor
 from gearmath.quality.uncertainty.figures import Extreme, Figure, Figures
 from gearmath.quality.uncertainty.study import monte_carlo, run
+from gearmath.shown import Shown, Shows
 
 #: Coverage probability of the intervals.
 PROBABILITY = 0.95
@@ -32,8 +33,8 @@ PROBABILITY = 0.95
 _CERTAIN = 9.0
 
 
-@dataclass(frozen=True)
-class Uncertain:
+@dataclass(frozen=True, repr=False)
+class Uncertain(Shown):
     """A figure with its value, standard uncertainty and interval of 95 % [mm, rad ...]; ``drawn`` is u by Monte Carlo.
 
     ``drawn`` is None where nothing was drawn.
@@ -63,6 +64,12 @@ class Uncertain:
             "unit": self.figure.unit,
             "method": self.method,
         }
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figure = self.figure
+        figures: list[Shows] = [("value", self.value * figure.factor, figure.unit)]
+        figures += [("u", self.uncertainty * figure.factor, figure.unit), ("by", self.method, "")]
+        return f"{figure.flank}, {figure.name}", figures
 
 
 def contenders(extreme: Extreme, judged: np.ndarray, covariance: Covariance) -> tuple[np.ndarray, float]:

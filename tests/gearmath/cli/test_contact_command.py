@@ -101,8 +101,8 @@ def test_displacement_of_the_pinion_moves_the_contact_as_its_sensitivity_says(na
 def test_picture_is_written(command, tmp_path):
     target = tmp_path / "contact.png"
     status, out, err = command("contact", SET, "--step", 15, "--tolerance", "--plot", target)
-    assert "V to the minus side" in out
-    assert "reached as it stands" in out
+    assert "none: reversed parabola as it stands" in out
+    assert "pattern as it stands reaches" in out
     assert (status, err) == (0, "")
     assert str(target) in out
     assert target.read_bytes().startswith(b"\x89PNG")

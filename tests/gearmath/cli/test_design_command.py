@@ -97,6 +97,12 @@ def test_text_says_what_was_asked_and_found(command, written, tmp_path):
         ("", "76.2", "[coast]\npath_angle = 50.0\n", r"coast: edge contact.*path_angle, now 50"),
         ("", "76.2", "[coast]\npath_angle = 5.0\n", r"coast\.path_angle = 5.*at least 15"),
         ("face_widht = 3", "76.2", "", r"face_widht"),
+        ("", "76.2", "[pinion]\nblade_edge_radius = 5.0\n", r"pinion\.blade_edge_radius = 5: .* it must be at most \d"),
+        ("", "76.2", "[gear]\nblade_edge_radius = 5.0\n", r"gear\.blade_edge_radius = 5: .* it must be at most \d"),
+        ("", "76.2", "[gear]\nblade_edge_radius = 1e-9\n", r"blade_edge_radius = 1e-09: must be 0, .* at least 0\.001"),
+        ("", "76.2", "[pinion]\ncutter_tilt = -30.0\n", r"pinion\.cutter_tilt = -30: .*must be at least 3"),
+        ("", "500.0", "", r"cutter\.cutter_radius = 500: .*must be at most 500"),
+        ("", "76.2", "[drive]\npattern_length = 0.1\n", r"drive: .*pattern_length = 0\.1: .* must be at least 70%"),
         (
             "",
             '76.2\nprocess = "face_hobbing"\nblade_groups = 9',
@@ -133,6 +139,20 @@ def test_what_cannot_be_is_refused_with_what_binds(refused, written, tmp_path, m
             ("[cutter]", '[pinion]\ncutting = "completing"\n[cutter]\nprocess = "face_hobbing"\nblade_groups = 11'),
             "cutter.process = 'face_hobbing': must be 'face_milling'",
         ),
+        # 2 x 93.75 mm x sin(71.565 degrees)/36; the cutter is of 6 inches
+        ("nasa_tp3096_12x36.toml", ("4.96", "4.90"), "outer_transverse_module of 4.9 mm: must be 4.94"),
+        ("nasa_tp3096_12x36.toml", ("4.96", "4.941\nshaft_angle = 80"), "shaft_angle = 80: must be 90"),
+        (
+            "nasa_tp3096_12x36.toml",
+            ("4.96", "4.941\nmean_spiral_angle = 30"),
+            "mean_spiral_angle = 30 degrees: must be 34.9",
+        ),
+        (
+            "nasa_tp3096_12x36.toml",
+            ("4.96", "4.941\npressure_angle_drive = 25"),
+            "pressure_angle_drive = 25 degrees: must",
+        ),
+        ("nasa_tp3096_12x36.toml", ("4.96", "4.941"), "cutter.cutter_radius of 57.15 mm: must be 76.2"),
     ],
 )
 def test_gear_of_another_pair_is_refused(refused, written, tmp_path, of_set, other, sentence):
@@ -140,6 +160,8 @@ def test_gear_of_another_pair_is_refused(refused, written, tmp_path, of_set, oth
     path = written()
     if other:
         path.write_text(path.read_text("utf-8").replace(*other), "utf-8")
+    if "cutter_radius" in sentence:
+        path.write_text(path.read_text("utf-8").replace("= 76.2", "= 57.15"), "utf-8")
     refused(re.escape(sentence), "design", path, "--from", of_set, "-o", tmp_path / "s")
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections import Counter
 from dataclasses import replace
 
@@ -192,3 +193,22 @@ def test_solid_is_closed_and_a_space_is_open(command, tmp_path):
 def test_bad_arguments_are_one_line_and_write_nothing(refused, tmp_path, arguments, sentence):
     refused(sentence, *(each.format(target=tmp_path / "t.stl", folder=tmp_path) for each in arguments))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_far_side_of_a_cutter_that_cuts_the_other_flank_is_told_as_the_judge_of_its_program_finds_it(command, tmp_path):
+    """A point of 3.2 mm is narrower than the slot everywhere, but its far side does not run along the other flank."""
+    path = tmp_path / "wide.toml"
+    radius = "blade_point_radius = 75.326783002724\n"
+
+    def note(width):
+        text = bundled(SET).read_text("utf-8").replace(radius, f"{radius}blade_point_width = {width}\n")
+        path.write_text(text, "utf-8")
+        _, out, _ = command("tooth", path, "--member", "pinion", "--columns", 9, "-o", tmp_path / "t.stl")
+        return re.search(r"cuts (\d+) um into the convex flank: blade_point_width must be at most ([\d.]+) mm", out)
+
+    found = note(3.2)
+    status, _, err = command("nc", "cut", path, "--member", "pinion", "--spaces", 0, "-o", tmp_path / "CUT.MPF")
+    assert status == 2
+    (judged,) = re.findall(r"gouges the convex flank of space 0: -([\d.]+) um", err)
+    assert float(found[1]) == pytest.approx(float(judged), rel=0.05)
+    assert note(found[2]) is None

@@ -18,6 +18,17 @@ def machine() -> HobbingMachine:
     return load_hobbing_machine(bundled("hobbing_plewes.toml"))
 
 
+def test_what_a_machine_lacks_and_whose_sketch_is_replaced_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    for name in ("hobbing_default", "hobbing_minimum"):
+        main(["export", "teensy", f"{name}.toml", "-o", str(tmp_path / "hobber")])
+    first, second = capsys.readouterr().out.split("hobber: 25 files\n")[1:]
+    assert "replace" not in first
+    assert "they replace those of 'Hobbing machine with all its guards'" in second
+    assert "No fail-safe output (pins.healthy): after a fault you must stop the hob yourself." in second
+
+
 def test_teensy_folder_is_a_whole_sketch(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     for _ in range(2):  # a folder of ours is replaced
         main(["export", "teensy", str(bundled("hobbing_plewes.toml")), "-o", str(tmp_path / "hobber")])

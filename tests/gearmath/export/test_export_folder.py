@@ -86,7 +86,7 @@ def test_file_link_and_current_folder_are_refused(tmp_path: Path, monkeypatch: p
     for name, message in (("file", "is no folder"), ("link", "is no folder"), ("real", "is the current folder")):
         with pytest.raises(InputError, match=message):
             write_folder(tmp_path / name, {"a.c": "1"})
-    with pytest.raises(InputError, match="cannot be written"):
+    with pytest.raises(InputError, match="file is a file and not a folder"):
         write_folder(tmp_path / "file" / "below", {"a.c": "1"})
 
 

@@ -173,3 +173,34 @@ def test_engaged_at_the_phase_of_the_thread_after_a_stop(new_core):
         assert core.status.in_phase == 1
         off = (core.status.position + core.status.pending - ratio * core.status.edges) % (4096 * ratio)
         assert min(off, 4096 * ratio - off) <= Fraction(1, 2)
+
+
+def test_full_rate_of_the_readme_is_reached_by_engaging_and_the_line_comes_back_after_a_hob_that_stops_at_once(
+    new_core,
+):
+    """Commissioning of the bundled machine as its README says it: the hob is at its speed, and stops, within a tick."""
+    machine = find_hobbing_machine("hobbing_default.toml")
+    text = " ".join(guide(machine, "gearbox").split())
+    words = r"job of (\d+) teeth, no.*?on, (\d+) rpm.*?to about (\d+) steps/s.*?after about (\d+) s, with (\d+) steps/s"
+    teeth, rpm, highest, seconds, rate = (int(one) for one in re.search(words, text).groups())
+    ratio = Fraction(16_000, teeth * 4096)
+    core = new_core(GM_ACCELERATION=8000, GM_MAX_STEP_RATE=40_000)
+    edges = rpm / 60 * 4096
+    core.play(turned(np.full(100_000, edges)))
+    assert (core.job(ratio.numerator, ratio.denominator), core.run()) == (0, 0)
+    record = core.play(turned(np.full(int((seconds + 0.5) / TICK), edges)))
+    assert core.status.in_phase == 1
+    assert np.diff(record.position[::2000]).max() / (2000 * TICK) == pytest.approx(highest, rel=0.05)
+    assert edges * float(ratio) == pytest.approx(rate, abs=1)
+    core.stop()
+    core.play(turned(np.full(int(3.5 / TICK), edges)))
+    core.play(0, 100_000)  # switched off, at once
+    assert core.run() == 0
+    by_hand = 0
+    while core.status.in_phase == 0:
+        core.play(turned(np.full(20_000, 4096.0)))  # a tenth of a turn
+        by_hand += 1
+        assert by_hand <= 10 * teeth + 5
+    place = core.status.position + core.status.pending
+    off = (place - ratio * core.status.edges) % 16_000
+    assert min(off, 16_000 - off) <= Fraction(1, 2)

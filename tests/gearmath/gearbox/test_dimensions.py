@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize
 
-from gearmath.gearbox.dimensions import Gear, blank_diameter, chord, over_pins, span, swivel, undercut
+from gearmath.gearbox.dimensions import Gear, blank_diameter, chord, over_pins, pin_contact, span, swivel, undercut
 
 ALPHA = math.radians(20.0)
 
@@ -46,6 +46,14 @@ def test_undercut_begins_below_the_published_teeth_and_ends_at_the_published_shi
     assert undercut(Gear(18, 2.0, ALPHA), 2.0) is None
     assert undercut(Gear(12, 2.0, ALPHA, shift=0.2982), 2.0) is None
     assert undercut(Gear(12, 2.0, ALPHA, math.radians(30)), 2.0) is None  # 11.54 teeth
+
+
+def test_pins_that_would_rest_where_the_hob_has_cut_the_involute_away_measure_nothing():
+    """4 teeth, m = 1: the formula touches at 1.912 mm, where a generated profile has lost 66 um of flank."""
+    few = Gear(4, 1.0, ALPHA)
+    assert pin_contact(few, 1.68).radius == pytest.approx(1.912, abs=2e-3)
+    assert over_pins(few) is not None
+    assert over_pins(few, involute_from=2.01) is None
 
 
 # --- a gear, point by point ---------------------------------------------------------------------------------------

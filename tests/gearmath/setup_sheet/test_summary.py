@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from html import unescape
 
@@ -38,6 +39,33 @@ def test_nasa_gear_reads_in_inches_and_minutes_as_it_was_published():
     assert sum(float(one) for one in build["point diameter"]) / 2 == pytest.approx(6.0, abs=1e-5)
     assert build["pressure angle"] == ["22°00'00\""] * 2
     assert build["edge radius"] == ["", ""]
+
+
+def test_nasa_pair_has_the_dimensions_that_were_published():
+    """TP-3096: spiral angle 35 degrees, gear blades of 22; mean cone distance 3.191 in, 1 in of face width, 36 teeth.
+
+    So the heel is at 3.691 in, and the module there 2 x 3.691 sin(71.565)/36 in. To the pitch cone the two sides lie by
+    about the same angle off their blades, in opposite senses.
+    """
+    found = tables("nasa_tp3096_12x36.toml")
+    for name in ("pinion", "gear"):
+        metric, inch = (found[f"{name}: Dimensions of the teeth; {unit}"] for unit in ("mm and degrees", INCHES))
+        assert float(metric["mean spiral angle"][0]) == pytest.approx(35.0, abs=0.3)
+        angles = [float(metric[f"normal pressure angle, {flank}"][0]) for flank in FLANKS]
+        assert sum(angles) / 2 == pytest.approx(22.0, abs=0.6)
+        assert abs(angles[0] - angles[1]) > 1.0
+        assert float(inch["outer cone distance"][0]) == pytest.approx(3.691, abs=5e-4)
+        module = 2 * 3.691 * math.sin(math.atan(3)) / 36
+        assert float(inch["outer transverse module"][0]) == pytest.approx(module, abs=1e-4)
+        pitch = math.pi * float(metric["mean normal module"][0])
+        assert 0.3 * pitch < float(metric["mean normal tooth thickness, arc"][0]) < 0.7 * pitch
+
+
+def test_width_that_the_planner_takes_stands_on_the_sheet_of_a_set_that_states_none():
+    text = summary_sheet(load_bevel_set(bundled("spiral_7x43.toml")))
+    found = tables("spiral_7x43.toml")
+    assert all(float(width) > 0 for width in found["pinion: Cutter build; mm and degrees"]["point width"])
+    assert "The set states no point width for the outside blade and inside blade" in text
 
 
 def test_both_tables_say_the_same_with_the_signs_of_the_file():

@@ -130,6 +130,8 @@ BAD = [
     (PLEWES, "module = 1.0", "module = nan", ("hobs #10.module", "nan", "finite")),
     (PLEWES, "module = 1.0", "module = 1.0\ndiametral_pitch = 32.0", ("hobs #10.module = 1", "diametral_pitch = 32")),
     (PLEWES, "module = 1.0", "", ("hobs #10", "exactly one")),
+    # 200 x 4 microsteps a turn: 2 pi 1e7/800 = 78540 rad/s2; 50000 are 6366197 steps/s2
+    (PLEWES, "acceleration_hz_per_s = 8000.0", "acceleration_hz_per_s = 1e7", ("78540 rad/s2", "at most 6366197")),
     (PLEWES, "module = 1.0", "module = 1.00001", ("hobs #10", "1.00001", "four decimals")),
     (PLEWES, "module = 1.0", "module = 1.0\ndiameter = 4.0", ("hobs #10", "diameter = 4", "five modules")),
     (PLEWES, '"2.25m"', '"2.25/P"', ("hobs #10", "2.25/P", "2.25m")),
@@ -312,3 +314,12 @@ def test_filter_of_a_counter_passes_every_real_edge_at_the_highest_speed():
         assert filtered < 1e9 / machine.max_edge_rate / 2
         pulsed = with_changes(PLEWES, PULSES, ('"teensy32"', f'"{board}"'))
         assert pulsed.counter_filter(pulsed.max_edge_rate)[1] <= 250  # a pulse is 1 us at least
+
+
+def test_a_hob_has_a_number_of_two_digits_on_the_display(tmp_path):
+    sizes = "".join(f'[[hobs]]\nmodule = {1 + k / 1000}\ndepth_rule = "2.25m"\n' for k in range(100))
+    text = PLEWES
+    path = tmp_path / "many.toml"
+    path.write_text(text[: text.index("[[hobs]]")] + sizes, "utf-8")
+    with pytest.raises(InputError, match=r"hobs: the list has 100, at most 99 have a number on the display"):
+        load_hobbing_machine(path)

@@ -11,6 +11,7 @@ import pytest
 from gearmath.bevel.contact.marked import marked_area
 from gearmath.bevel.contact.mesh import mesh
 from gearmath.bevel.contact.misalignment import sensitivities
+from gearmath.bevel.contact.outcome_limits import Change
 from gearmath.bevel.contact.pattern import pattern
 from gearmath.bevel.contact.report import SIDES, side_mesh, tolerance_figures
 from gearmath.bevel.contact.system import Assembly
@@ -87,9 +88,11 @@ def test_flanks_that_touch_along_lines_have_no_tolerance(uniform_pair) -> None:
 
 def test_json_names_displacement_sense_value_and_edge() -> None:
     both = Limit(-0.2, "gear toe"), Limit(5.0, None)
-    found = tolerance_figures(Tolerance(("pinion tip",), {"V": both, "H": both}))
+    changes = Change(-0.01, "edge contact"), Change(0.02, "fillet contact")
+    found = tolerance_figures(Tolerance(("pinion tip",), {"V": both, "H": both}), {"V": changes, "H": changes})
     assert found is not None
-    assert list(found) == ["reached", "v", "h"]
+    assert list(found) == ["reached", "v", "h", "outcome_changes"]
+    assert found["outcome_changes"]["h"]["plus"] == {"value": 0.02, "outcome": "fillet contact"}
     assert found["reached"] == ["pinion tip"]
     assert found["v"] == {"minus": {"value": -0.2, "edge": "gear toe"}, "plus": {"value": 5.0, "edge": None}}
     assert tolerance_figures(None) is None

@@ -12,19 +12,25 @@ from gearmath.bevel.blank import blank_of
 from gearmath.bevel.contact.report import ARCSEC, SIDES, side_mesh
 from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.crown_gear import Method, crown_gear_set
+from gearmath.bevel.design import completing
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.verdict import verdict, vertex
 from gearmath.bevel.ease_off import ease_off, parts
 from gearmath.bevel.flank import Margins, blank_grid, nominal_points
+from gearmath.bevel.generation import solve_section
+from gearmath.bevel.method import blade_sections, generation_of
 from gearmath.bevel.pair import check_pair
+from gearmath.bevel.root import mean_place
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius, mean_tooth_thickness
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.blades import blade_phase, blades_of
 from gearmath.machine.planning.path import six_axes
-from gearmath.specs.bevel_set import Member
+from gearmath.specs.bevel_set import FLANKS, Member
+from gearmath.specs.bevel_set import SIDES as FLANK_SIDES
 from gearmath.specs.design import DesignData
 from gearmath.specs.toml import checked
+from tests.gearmath.bevel.design.family import mixed
 
 MILLED = {
     "title": "12 x 36",
@@ -194,3 +200,25 @@ def test_modified_roll_comes_in_the_steps_of_the_shop() -> None:
         for value in designed.pair.member("pinion").flank(flank).motion.modified_roll:
             assert value / 1e-4 == pytest.approx(round(value / 1e-4), abs=1e-6)
             assert abs(value) > 1e-4
+
+
+def test_flanks_are_the_same_where_the_cradle_angle_is_moved_to_their_middle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Modified roll and helical motion count from another cradle angle then."""
+    before = design(mixed(4)).pair.member("pinion")
+    monkeypatch.setattr(completing, "_OFF_CENTER", 0.0)
+    found = design(mixed(4)).pair.member("pinion")
+    assert 3 < abs(found.concave.cradle_angle - before.concave.cradle_angle) < 5
+    assert before.concave.motion.modified_roll
+    assert before.concave.motion.sliding_base
+    for flank in FLANKS:
+        (points, _), (there, _) = (nominal_points(one, flank, blank_grid(one)) for one in (before, found))
+        assert np.abs(there.point - points.point).max() < 1e-8
+
+
+def test_cradle_of_a_hobbed_pinion_stands_in_the_middle_of_its_roll() -> None:
+    """9 x 24: the fit moves the points of both flanks by 21 and 17 degrees; a set may have 15 at the most."""
+    data = checked(mixed(18).model_dump(exclude_unset=True) | {"shop": STEPS}, DesignData, "18")
+    pinion = design(data).pair.member("pinion")
+    for flank in FLANKS:
+        how, section = generation_of(pinion, flank), blade_sections(pinion.flank(flank), FLANK_SIDES[flank])["main"]
+        assert abs(math.degrees(solve_section(how, section, *mean_place(pinion)).contact[0, 2])) < 3

@@ -10,8 +10,11 @@ import pytest
 
 from gearmath.bevel.contact.report import SIDES
 from gearmath.bevel.design.accepted import accepted
+from gearmath.bevel.design.local_settings import NAMES, LocalSystem, solve
+from gearmath.bevel.design.pinion import PinionFlank
 from gearmath.bevel.design.route import design
 from gearmath.bevel.design.verdict import LEAST_LAND, EdgeContact, undercut, verdict
+from gearmath.bevel.design.whole_flank import fit
 from gearmath.bevel.tooth import space_figures, tooth_space
 from gearmath.errors import ComputationError, InputError
 from gearmath.specs.design import DesignData
@@ -19,9 +22,9 @@ from gearmath.specs.toml import checked
 from tests.gearmath.bevel.design.family import mixed
 
 DRAWS = 40
-#: Whole-flank residual of pinions whose flanks are cut one by one to generated gears [um]: asked, and the most that may
-#: be left where the settings cannot do more, which the figures state; it is so of this part of the flanks.
-RESIDUAL, MOST, MORE = 1.5, 1.75, 0.15
+#: Whole-flank residual of pinions whose flanks are cut one by one to generated gears [um]: asked, what is left by seed
+#: where the settings of an untilted machine cannot do more.
+RESIDUAL, LEAST = 1.5, {39: 1.553}
 
 
 def drawn(seed: int, **sides: Any) -> DesignData:
@@ -31,7 +34,7 @@ def drawn(seed: int, **sides: Any) -> DesignData:
 @pytest.mark.slow
 def test_draws_are_designed_as_asked_or_refused_in_a_sentence() -> None:
     """At most every fifth refused; of the others parabola within 2 percent, contact inside, no undercut, top land."""
-    refused, residuals = list[str](), list[float]()
+    refused = list[str]()
     for seed in range(DRAWS):
         asked = mixed(seed)
         try:
@@ -45,7 +48,7 @@ def test_draws_are_designed_as_asked_or_refused_in_a_sentence() -> None:
             assert figures[side]["outcome"] == "interior contact", seed
             assert figures["undercut_mm"] == {"pinion": 0, "gear": 0}, seed
             if asked.pinion.cutting == "fixed_setting" and asked.gear.generation == "generated":
-                residuals.append(figures[side]["ease_off_rms_um"])
+                assert figures[side]["ease_off_rms_um"] <= LEAST.get(seed, RESIDUAL) + 1e-3, seed
         for land in figures["top_land_mm"].values():
             assert min(land.values()) >= LEAST_LAND * figures["mean_normal_module_mm"], seed
         kept = asked.model_dump(exclude_unset=True)
@@ -54,8 +57,41 @@ def test_draws_are_designed_as_asked_or_refused_in_a_sentence() -> None:
         }, seed
     assert len(refused) <= DRAWS // 5, refused
     assert all("\n" not in said and any(mark.isdigit() for mark in said.partition(": ")[2]) for said in refused)
-    assert sum(one > RESIDUAL for one in residuals) <= MORE * len(residuals), sorted(residuals)
-    assert max(residuals) < MOST
+
+
+def test_ellipse_gets_longer_where_the_whole_flank_needs_it_and_nobody_asked_for_its_length() -> None:
+    """9 x 53: 2.25 um are left with the ellipse of half the face width, as the gap grows too fast towards the ends."""
+    free, held = (design(data).flanks["drive"] for data in (mixed(82), drawn(82, drive={"pattern_length": 0.5})))
+    assert held.fitted.rms > 2e-3 > RESIDUAL / 1000 > free.fitted.rms
+    figures = verdict(design(mixed(82)))[0]["drive"]
+    assert figures["bounds_reached"] == ["pattern_length"]
+    assert max(figures["semi_axes_mm"]["found"]) / figures["semi_axes_mm"]["asked_major"] == pytest.approx(
+        1.1, rel=1e-3
+    )
+    assert figures["path_angle_deg"]["found"] == pytest.approx(50, abs=0.1)
+    assert figures["second_derivative"]["found"] == pytest.approx(figures["second_derivative"]["asked"], rel=1e-3)
+
+
+def test_what_is_left_of_the_flank_is_the_least_that_its_settings_can() -> None:
+    """10 x 33: from settings all over their bounds the fit comes to the same figure; a tilted cutter leaves less."""
+    flank = design(mixed(39)).flanks["drive"]
+    assert isinstance(flank, PinionFlank)
+    problem, found = flank.problem, flank.fitted.local
+    places = [NAMES.index(name) for name in problem.extra]
+    left = list[float]()
+    for goal in np.random.default_rng(0).uniform(*problem.bounds.T, (12, len(places))):
+        near: LocalSystem | None = found
+        for part in np.linspace(0.1, 1, 10):
+            if near is not None:
+                x = near.x.copy()
+                x[places] = flank.x[places] + part * (goal - flank.x[places])
+                near = solve(problem.how, x, problem.wanted, problem.free)
+        fitted = None if near is None else fit(problem, near, flank.contact)
+        left += [] if fitted is None else [1000 * fitted.rms]
+    assert len(left) >= 6
+    assert left == pytest.approx([LEAST[39]] * len(left), abs=1e-3)
+    tilted = drawn(39, pinion={"free": ("blade_pressure_angle", "modified_roll", "cutter_tilt")})
+    assert 1000 * design(tilted).flanks["drive"].fitted.rms < RESIDUAL
 
 
 def test_pair_that_runs_on_edges_gets_a_path_that_lasts_longer_where_none_is_asked_for() -> None:

@@ -121,6 +121,20 @@ def test_tips_of_one_height_part_in_the_middle_of_the_space() -> None:
     assert step(member) < 0.05
 
 
+def test_root_of_a_formate_gear_is_where_its_blades_leave_it() -> None:
+    """13 x 38, blades without a height of their own: their planes are turned about the point radius, so what a tip cuts
+    away from it is not what a blade of that radius would, by up to 2.7 um."""
+    made = accepted(checked(TILTED | NARROW[0], DesignData, "narrow"))[0].pair
+    member = made.member("gear")
+    assert member.concave.blade_tip_height == member.convex.blade_tip_height == 0
+    space = tooth_space(member, "gear", 7)
+    cutting = execute(cutting_program(made, "gear", machine(), "HOB", CuttingJob(range(38), 5e-4)), "HOB.MPF")
+    runs = runs_of(cutting, member, "gear", machine(), None, space)
+    for state in surface_states(None, member, "gear", machine(), spaces=(2,), runs=runs, space=space):
+        assert state.unmet == 0, state
+        assert max(-state.lowest, state.highest) < 2e-4, state
+
+
 @pytest.mark.parametrize("changes", NARROW, ids=lambda changes: str(changes["title"]))
 def test_tips_of_a_space_that_narrows_towards_the_toe_stay_off_the_other_fillet(changes: dict[str, object]) -> None:
     """By the crossings of single blades, as above; a tip that is a tenth of a millimetre longer cuts into it."""

@@ -73,7 +73,7 @@ def cut(written, hobbed, vertical):
     files = {}
 
     def run(member, errors=None, gear_set=hobbed, **job):
-        key = (member, repr(errors), id(gear_set), *sorted(job.items()))
+        key = (member, errors and errors.model_dump_json(), id(gear_set), *sorted(job.items()))
         if key not in files:
             path = execute(written(member, gear_set=gear_set, **job), "HOB.MPF")
             files[key] = mill_member(path, gear_set.member(member), member, vertical, errors)
