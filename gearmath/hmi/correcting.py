@@ -23,6 +23,7 @@ from gearmath.front.programs import cutting
 from gearmath.front.sets import GearSet
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.judged_runs import JudgedRuns, stored_files
+from gearmath.machine.judging.dialects import named
 from gearmath.plot.sheet import topography_chart
 from gearmath.plot.topography import um_per_row
 from gearmath.quality.correction.member import MemberCorrection, correct
@@ -131,10 +132,11 @@ def accept(runs: JudgedRuns, proposal: Proposal, folder: Path) -> Accepted:
     with _ONE_AT_A_TIME, stored_files(evaluated) as stored:
         was_called = evaluated.run.start.settings.get(SET, "set.toml")
         gear_set = free_file(folder, f"{_stem(was_called)}_run{number}", ".toml")
-        program = free_file(folder, f"{name.upper()}_R{number}", ".MPF")
+        machine = Machine(load_milling_machine(stored / MACHINE))
+        suffix = named(machine.spec.control.dialect(None)).suffix
+        program = free_file(folder, f"{name.upper()}_R{number}", suffix)
         new = stored / gear_set.name
         _write_set(proposal, stored / SET, new)
-        machine = Machine(load_milling_machine(stored / MACHINE))
         made = cutting(GearSet(load_pair(new)).member(name), machine, program.stem)
         write_text(gear_set, new.read_text("utf-8"))
         try:
