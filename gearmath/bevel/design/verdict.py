@@ -13,6 +13,7 @@ from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.report import ARCSEC, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
+from gearmath.bevel.design.crownings import crownings, miss
 from gearmath.bevel.design.local_settings import ACROSS
 from gearmath.bevel.design.route import Designed
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
@@ -217,8 +218,10 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
         )
     spread = run.leads.peak_to_peak
     lag = [None if math.isnan(one) else one * ARCSEC for one in found.lag]
+    crowning, rms = crownings(made.pair, flank.name, flank.request, asked), 1000 * flank.fitted.rms
     return {
         "outcome": run.outcome,
+        "remarks": [one for one in (miss(rms, crowning), _parabola_off(second, wanted)) if one],
         "contact_ratio": run.contact_ratio,
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
         "second_derivative": {"asked": wanted, "found": second},
@@ -233,10 +236,21 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             "found": math.degrees(found.local.path_angle),
         },
         "semi_axes_mm": {"asked_major": flank.request.semi_axis, "found": list(found.local.semi_axes)},
-        "ease_off_rms_um": flank.fitted.rms * 1000,
+        "crownings_um": crowning,
+        "ease_off_rms_um": rms,
         "share_of_flank": flank.share,
         "bounds_reached": ["pattern_length" if one == ACROSS else one for one in flank.fitted.active],
     }
+
+
+def _parabola_off(second: float, wanted: float) -> str:
+    """What to say of a parabola that the steps of the shop make another one; empty where they do not."""
+    if abs(second - wanted) <= PARABOLA * abs(wanted):
+        return ""
+    return (
+        f"the steps of [shop] change the second derivative at the vertex by {second / wanted - 1:+.1%}, where "
+        f"{PARABOLA:.0%} is no remark, and the transmission error with it: finer steps keep it"
+    )
 
 
 def _asked_place(made: Designed, side: str) -> tuple[float, float]:

@@ -209,6 +209,18 @@ def test_settings_come_in_the_steps_of_the_shop() -> None:
     for side in SIDES:
         second = figures[side]["second_derivative"]
         assert second["found"] == pytest.approx(second["asked"], rel=0.05)
+        assert figures[side]["remarks"] == []
+
+
+def test_steps_that_make_another_parabola_are_said() -> None:
+    """A step of 0.001 of the ratio of roll is a large part of what gives the transmission error its curvature."""
+    figures, _ = verdict(design(data(GENERATED, shop={"angle_step": 0.05, "length_step": 0.05, "ratio_step": 1e-3})))
+    for side in SIDES:
+        second = figures[side]["second_derivative"]
+        off = second["found"] / second["asked"] - 1
+        assert abs(off) > 0.03
+        (said,) = figures[side]["remarks"]
+        assert f"change the second derivative at the vertex by {off:+.1%}, where 2% is no remark" in said
 
 
 def test_pinion_to_a_given_gear_leaves_gear_and_blanks_alone() -> None:
