@@ -87,9 +87,8 @@ def _cuts(
     missing = off - room(member, flank, space, width), touch - fillet_room(member, flank, width)
     if max(missing) <= 0:
         return ""
-    what = "flank" if missing[0] >= missing[1] else "fillet"
-    deep = max(missing) - min(off, touch, 0.0)
-    return f"cuts {1000 * deep:.0f} um into the {opposite(flank)} {what}"
+    what, deep = ("flank", missing[0]) if missing[0] > 0 else ("fillet", missing[1])
+    return f"cuts {1000 * (deep - min(off, touch, 0.0)):.0f} um into the {opposite(flank)} {what}"
 
 
 def _narrow_enough(member: Member, flank: str, space: ToothSpace, width: float) -> float | None:

@@ -16,6 +16,7 @@ from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.crownings import crownings, miss
 from gearmath.bevel.design.local_settings import ACROSS
 from gearmath.bevel.design.route import Designed
+from gearmath.bevel.design.take_over import advice, reason
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.grid import over_reach
 from gearmath.bevel.pair import check_computed
@@ -190,26 +191,10 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             "position must be given, or the path come nearer to 90 degrees"
         )
     if run.outcome != "interior contact" or found is None:
-        changes: tuple[str, ...] = (
-            (
-                f"a smaller profile_crowning (now {asked.profile_crowning:g} um)",
-                f"another bias (now {asked.bias:g} um)",
-            )
-            if crowned
-            else (
-                "a path nearer to the length of the tooth "
-                f"(path_angle, now {math.degrees(flank.request.path_angle):.4g} degrees)",
-                f"a smaller transmission_error (now {asked.transmission_error:g} arcsec)",
-                f"a shorter pattern_length (now {asked.pattern_length:g})",
-            )
-        )
-        if asked.position is not None:
-            changes += (f"a position nearer to the middle (now {asked.position[0]:g}, {asked.position[1]:g})",)
-        changes += ("finer steps in [shop]",) * stepped
-        raise EdgeContact(
-            f"{side}: {run.outcome}: one pair of teeth does not take over from the next within the flanks, where the "
-            f"contact ratio is {run.contact_ratio:.3g}: {', '.join(changes[:-1])} or {changes[-1]} is needed"
-        )
+        at = None if found is None else found.touch.rotation
+        free, rms = made.data.pinion.may_change, 1000 * flank.fitted.rms
+        helps = advice(run.outcome, asked, flank.request, rms, free, stepped)
+        raise EdgeContact(f"{side}: {run.outcome}: {reason(run, at)}: {helps} is needed")
     second, wanted = found.local.second_derivative, flank.request.parabola
     if not stepped and not abs(second - wanted) <= PARABOLA * abs(wanted):
         raise InputError(

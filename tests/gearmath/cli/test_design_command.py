@@ -94,7 +94,12 @@ def test_text_says_what_was_asked_and_found(command, written, tmp_path):
         ("", "20.0", "", r"cutter\.cutter_radius = 20: .* must be at least \d"),
         ("", "80.0\nradii = [63.5, 76.2]", "", r"cutter_radius 80 is not on the list of radii: 63\.5, 76\.2"),
         ("", "76.2", "[drive]\npath_angle = 16.0\npattern_length = 0.1\n", r"drive: pattern_length = 0\.1: .*above"),
-        ("", "76.2", "[coast]\npath_angle = 50.0\n", r"coast: edge contact.*path_angle, now 50"),
+        (
+            "",
+            "76.2",
+            "[coast]\npath_angle = 50.0\n",
+            r"coast: edge contact.* after it.*a larger path_angle \(now 50",
+        ),
         ("", "76.2", "[coast]\npath_angle = 5.0\n", r"coast\.path_angle = 5.*at least 15"),
         ("face_widht = 3", "76.2", "", r"face_widht"),
         ("", "76.2", "[pinion]\nblade_edge_radius = 5.0\n", r"pinion\.blade_edge_radius = 5: .* it must be at most \d"),
