@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomlkit
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
@@ -56,13 +58,16 @@ def test_text_says_what_was_fitted_and_what_is_left(command, points, tmp_path):
     assert "bounds reached" not in out  # none held anything back
 
 
-def test_points_that_are_larger_than_the_blank_are_said_to_be_and_get_no_mate(command, tmp_path):
-    """By a hundredth, away from the apex: a flank of its own, of another blank."""
+def test_points_that_are_larger_than_the_blank_and_a_gear_that_is_no_mate_are_said(command, tmp_path):
+    """Points larger by a hundredth, away from the apex: a flank of its own; and a gear cut by a millimetre too wide."""
     member = load_bevel_set(bundled("spiral_7x43.toml")).member("pinion")
     file = join([nominal_flank(member, "pinion", flank, blank_grid(member)) for flank in FLANKS])
-    path, target = tmp_path / "points.csv", tmp_path / "set.toml"
+    path, given, target = tmp_path / "points.csv", tmp_path / "given.toml", tmp_path / "set.toml"
     write_flank_csv(path, replace(file, point=1.01 * file.point))
-    status, out, _ = command("design", "--reverse", path, "spiral_7x43.toml", "-o", target, "--json")
+    values = tomllib.loads(bundled("spiral_7x43.toml").read_text("utf-8"))
+    values["gear"]["concave"]["blade_point_radius"] += 1.0
+    given.write_text(tomlkit.dumps(values), "utf-8")
+    status, out, _ = command("design", "--reverse", path, given, "-o", target, "--json")
     assert status == 0
     found = json.loads(out)
     middle = found["middle_cone_distance_mm"]
