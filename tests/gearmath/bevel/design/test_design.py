@@ -240,7 +240,9 @@ def test_what_is_held_at_the_mean_point_does_not_give_way_to_the_whole_flank() -
     assert np.abs(free.request.curvature - held.request.curvature).max() < 1e-12
 
 
-def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_wide_and_too_narrow_a_face_are_refused_before_anything_is_computed_for_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """0.35 of the outer cone distance are allowed, as in a set: it is 66 mm / sin(71.565 degrees) = 69.57 mm here."""
     monkeypatch.setattr("gearmath.bevel.design.route.request", None)
     data = {
@@ -251,7 +253,9 @@ def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypat
         "face_width": 25.0,
         "cutter": {"cutter_radius": 70.0},
     }
-    with pytest.raises(
-        InputError, match=r"^design data: face_width = 25: must be at most 0\.35 of the outer cone distance, 24\.35 mm"
+    for width, sentence in (
+        (25.0, r"face_width = 25: must be at most 0\.35 of the outer cone distance, 24\.35 mm"),
+        (2.0, r"face_width = 2: must lie between 6\.957 and 24\.35 mm, 0\.1 and 0\.35 of the outer cone distance"),
     ):
-        design(checked(data, DesignData, "wide"))
+        with pytest.raises(InputError, match=f"^design data: {sentence}$"):
+            design(checked({**data, "face_width": width}, DesignData, "wide"))
