@@ -22,7 +22,7 @@ _WIDER_FACE = 0.1
 #: Root of one member and tip of the mate are parallel, so that the clearance is the same along the tooth. [degree]
 _PARALLEL = 0.5
 #: Least part of the outer cone distance that a face width takes; the most is that of blanks that are designed.
-_NARROWEST_FACE = 0.1
+NARROWEST_FACE = 0.1
 #: Clearance over working depth; ISO 23509 has 0.125.
 _CLEARANCE = (0.04, 0.35)
 #: Working depth over mean transverse module, for normal depth factors of 1.2 to 2.6 and spiral angles up to 50 degrees.
@@ -47,11 +47,11 @@ def working_depth(blank: Blank) -> float:
 def check_blank(member: Member, name: str) -> None:
     """Refuse a blank that contradicts itself. Raises InputError naming member, key, value and limit."""
     blank, table = member.blank, f"{name}.blank"
-    narrowest, widest = (share * blank.mean_cone_distance / (1 - share / 2) for share in (_NARROWEST_FACE, WIDEST_FACE))
+    narrowest, widest = (share * blank.mean_cone_distance / (1 - share / 2) for share in (NARROWEST_FACE, WIDEST_FACE))
     if not narrowest <= blank.face_width <= widest:
         raise InputError(
             f"{table}.face_width = {blank.face_width:g}: must lie between {narrowest:.4g} and {widest:.4g} mm, "
-            f"{_NARROWEST_FACE:g} and {WIDEST_FACE:g} of the outer cone distance, at a mean_cone_distance of "
+            f"{NARROWEST_FACE:g} and {WIDEST_FACE:g} of the outer cone distance, at a mean_cone_distance of "
             f"{blank.mean_cone_distance:g}"
         )
     module, depth = transverse_module(member), working_depth(blank)

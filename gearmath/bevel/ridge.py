@@ -81,7 +81,7 @@ def ridge(member: Member, space: ToothSpace | None) -> float:
         return 0.0
     uncorrected = {flank: member.flank(flank).model_copy(update={"design": None}) for flank in FLANKS}
     as_cut = member.model_copy(update=uncorrected)
-    edges = {flank: _far_edge(as_cut, flank, point_width(member, flank, space.slots[flank])) for flank in FLANKS}
+    edges = {flank: far_edge(as_cut, flank, point_width(member, flank, space.slots[flank])) for flank in FLANKS}
     return _highest(edges)
 
 
@@ -123,7 +123,7 @@ def _between(one: np.ndarray, up: np.ndarray, other: np.ndarray, up_other: np.nd
     return float(np.minimum(left, left_by_other).max() - max(up[0], up_other[0]))
 
 
-def _far_edge(member: Member, flank: str, width: float) -> tuple[np.ndarray, np.ndarray]:
+def far_edge(member: Member, flank: str, width: float) -> tuple[np.ndarray, np.ndarray]:
     """Angles about the axis [rad] and heights over the root [mm] (rows, 13) of what the rounded edge on the far side
     of a cutter leaves, its lowest point first, at the places ``ACROSS``; NaN where it leaves nothing."""
     how, far = generation_of(member, flank), SIDES[opposite(flank)]

@@ -33,6 +33,9 @@ _WELL, _LEAST = 0.7, 0.05
 #: A slip changes a length or an angle by more than this, mm or degrees: less is a correction, by which a set that is
 #: just beyond a limit may pass. Of two values that must be one, any difference is a slip.
 _NO_CORRECTION = 0.5
+#: Backlash hangs on a dozen settings by hundredths of a degree or millimetre: there, a slip that changes less than this
+#: is as likely as any of these. So is an angle of two decimals that happens to be one of minutes, too.
+_OF_BACKLASH, _NONE_OF_BACKLASH, _WITHOUT_SECONDS = "transverse backlash of", 1.0, 2
 _MUST_BE_ONE = "for both flanks, not two"
 
 
@@ -130,6 +133,8 @@ def _of_digits(values: Values, refusal: str, change: Callable[[float], Iterator[
     for key, ((member, flank), table) in itertools.product(SETTINGS, _named(values, refusal)):
         if not is_number(table.get(key)) or not table[key]:
             continue
+        if key == _PHASE and change is wrong_digits and _OF_BACKLASH in refusal:
+            continue
         completing = values[member].get("cutting") == "completing"
         shared = completing and all(values[member].get(each, {}).get(key) == table[key] for each in FLANKS)
         if shared and flank == FLANKS[1]:
@@ -137,6 +142,8 @@ def _of_digits(values: Values, refusal: str, change: Callable[[float], Iterator[
         places = [(member, each, key) for each in (FLANKS if shared else (flank,))]
         names = " and ".join(".".join(place) for place in places)
         for other in change(table[key]):
+            if _OF_BACKLASH in refusal and abs(other - table[key]) <= _least(key, refusal):
+                continue
             words = f"{names} = {other:.9g}, not {table[key]:.9g}"
             yield words, changed(values, *((place, other) for place in places))
 
@@ -162,9 +169,12 @@ def _of_settings(values: Values, refusal: str) -> Iterator[Slip]:
             others = [beside[key]] if is_number(beside.get(key)) else []
             others += [old * factor for factor in _OF_ALL if key != _PHASE or factor < 0]
             others += _misread(key, old)
-            least = 0.0 if key == RATIO or _MUST_BE_ONE in refusal else _NO_CORRECTION
+            least = 0.0 if key == RATIO or _MUST_BE_ONE in refusal else _least(key, refusal)
             others = [value for value in others if abs(value - old) > least]
-            for other in dict.fromkeys([*others, *_of_minutes(key, old)]):
+            minutes = _of_minutes(key, old)
+            if _OF_BACKLASH in refusal and round(old, _WITHOUT_SECONDS) == old:
+                minutes = []
+            for other in dict.fromkeys([*others, *minutes]):
                 words = f"{member}.{flank}.{key} = {other:.6g}, not {old:.6g}"
                 yield words, changed(values, ((member, flank, key), other))
     for member in (name for name in MEMBERS if len([place for place in tables if place[0] == name]) == len(FLANKS)):
@@ -181,6 +191,11 @@ def _of_settings(values: Values, refusal: str) -> Iterator[Slip]:
                 of, to = ((member, flank, key) for key in (one_key, other_key))
                 exchanged = changed(values, (of, table[other_key]), (to, table[one_key]))
                 yield f"{member}.{flank}.{one_key} and {other_key} exchanged", exchanged
+
+
+def _least(key: str, refusal: str) -> float:
+    """What a slip changes a setting by at least, mm or degrees."""
+    return _NONE_OF_BACKLASH if _OF_BACKLASH in refusal and key != RATIO else _NO_CORRECTION
 
 
 def _of_both(values: Values, member: str, key: str, *given: float) -> Iterator[Slip]:

@@ -125,10 +125,15 @@ def _side(side: str, found: dict[str, Any]) -> str:
             "half axes of the ellipse",
             f"{axes['found'][0]:.3f} and {axes['found'][1]:.3f} mm, asked {axes['asked_major']:.3f}",
         ],
+        *(
+            [f"{name.replace('_', ' ')} of the whole flank", f"{one['found']:.1f} um, asked {one['asked']:g}"]
+            for name, one in (found["crownings_um"] or {}).items()
+        ),
         [
             "ease-off less the wanted one",
             f"{found['ease_off_rms_um']:.2f} um RMS on {found['share_of_flank']:.0%} of the places its mate reaches",
         ],
         ["bounds reached", bounds],
     ]
-    return f"{side}: {found['outcome']}\n" + table(["figure", "value"], rows)
+    outcome = "".join([f"{side}: {found['outcome']}", *(f"; {remark}" for remark in found["remarks"])])
+    return outcome + "\n" + table(["figure", "value"], rows)

@@ -13,6 +13,9 @@ from gearmath.errors import counted
 if TYPE_CHECKING:
     from gearmath.bevel.design.reverse import ReversedFlank
 
+#: The bound of the root in words: points of a flank do not tell how deep the blade went.
+_ROOT = "root line (0.2 of the clearance from the blank's)"
+
 
 def reverse_design(points: Path, data: str, target: Path, sheet: Path | None, as_json: bool) -> None:
     """Find the settings of the member of a flank file, write them as a set, and print how well they do."""
@@ -32,6 +35,8 @@ def reverse_design(points: Path, data: str, target: Path, sheet: Path | None, as
     click.echo(f"{made.title}: {how}")
     for name, flank in made.found.flanks.items():
         click.echo("\n" + _text(name, figures[name], flank))
+    for note in figures["notes"]:
+        click.echo(f"\n{note}")
     click.echo(f"\n{target}: written")
     if sheet is not None:
         click.echo(f"{sheet}: summary sheet, prints on A4")
@@ -46,9 +51,10 @@ def _text(name: str, found: dict[str, Any], flank: ReversedFlank) -> str:
         ["scatter of the points about a smooth flank", f"{found['scatter_um']:.3g} um RMS"],
         ["largest deviation", f"{worst['deviation_um']:+.3g} um at row {worst['row']}, col {worst['col']}"],
         ["fitted", ", ".join(found["fitted"])],
-        ["bounds reached", ", ".join(found["bounds_reached"]) or "none"],
     ]
     left = "all but the scatter of its points is reproduced"
     if flank.not_reproduced > flank.scatter:
+        bounds = [_ROOT if name == "root line" else name for name in found["bounds_reached"]]
+        rows.append(["bounds reached", ", ".join(bounds) or "none"])
         left = f"{found['not_reproduced_um']:.3g} um RMS of its form are not reproduced"
     return f"{name} flank, {counted(found['points'], 'point')}: {left}\n" + table(["figure", "value"], rows)

@@ -89,9 +89,9 @@ def cut(
     from gearmath.machine.planning.cut_plan import CuttingJob
     from gearmath.machine.planning.limits import check_spindle_speed
     from gearmath.machine.writing.linuxcnc.cutting import tools_of
-    from gearmath.machine.writing.words import check_name
+    from gearmath.machine.writing.words import check_target
 
-    check_name(target.stem)
+    check_target(target)
     job = CuttingJob((0,), tolerance_um / 1000, feed, rpm, roughing_stock, finishing_stock, dry_run, blocks)
     on = load_machine(machine)
     dialect = dialect_of(on.spec, control, target if configuration else None)

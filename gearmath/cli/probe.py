@@ -150,12 +150,12 @@ def nc_calibrate(
     """
     from gearmath.front.machines import load_machine, load_probe
     from gearmath.front.probing import calibrating
-    from gearmath.machine.writing.words import check_name
+    from gearmath.machine.writing.words import check_target
     from gearmath.specs.toml import find
 
     on, known = load_machine(machine), load_probe(calibration)
     dialect = dialect_of(on.spec, control, target if configuration else None)
-    check_name(target.stem)
+    check_target(target)
     with bars() as begin:
         made = calibrating(on, known, cycle, target.stem, dialect.name, target, find(calibration), begin)
     _write(made, target, dialect if configuration else None, sheet)

@@ -14,7 +14,7 @@ from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.report import shown_runs
 from gearmath.bevel.design.accepted import accepted
 from gearmath.bevel.design.reverse import ReversedMember
-from gearmath.bevel.design.reverse_route import load_known, reversed_set
+from gearmath.bevel.design.reverse_route import ReversedSet, load_known, reversed_set
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
 from gearmath.front.progress import Begin, silent
@@ -75,22 +75,29 @@ class FoundSettings(Shown):
 
     title: str
     gear_set: GearSet
-    found: ReversedMember
+    how: ReversedSet
+
+    @property
+    def found(self) -> ReversedMember:
+        """How well the settings make the points, by flank."""
+        return self.how.found
 
     def to_dict(self) -> dict[str, Any]:
         """As ``gearmath design --reverse --json`` prints it, but for the name of the file; deviations in um."""
-        member = self.found.member
+        member, how = self.found.member, self.how
         stated = {key: getattr(member, key) for key in ("cutting", "process", "generation")}
-        (name,) = self.gear_set.spec.members
         flanks = {flank: found.as_dict() for flank, found in self.found.flanks.items()}
-        return {"member": name, **stated, **flanks}
+        place = {
+            "tooth_thickness_mm": dict(zip(("found", "blank"), how.thickness, strict=True)),
+            "middle_cone_distance_mm": dict(zip(("points", "blank"), how.middle, strict=True)),
+        }
+        return {"member": how.name, **stated, **place, "notes": list(how.notes), **flanks}
 
     def _shown(self) -> tuple[str, list[Shows]]:
-        figures: list[Shows] = []
+        _, figures = self.found._shown()
         for flank, found in self.found.flanks.items():
-            figures.append((f"{flank}: RMS", 1000 * found.rms, "um"))
-            figures += [(f"{flank}: largest in size", 1000 * float(abs(found.after).max()), "um")]
-        return f"settings of the {next(iter(self.gear_set.spec.members))}, {self.title}", figures
+            figures.append((f"{flank}: largest in size", 1000 * float(abs(found.after).max()), "um"))
+        return f"settings of the {self.how.name}, {self.title}", figures
 
 
 @checked_call
@@ -104,9 +111,9 @@ def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin =
     name = Path("points" if isinstance(points, FlankFile) else points)
     progress = begin(1, "member")
     with about(name):
-        found, how_well = reversed_set(known, file, f"settings found from the points of {name.name}")
+        found = reversed_set(known, file, f"settings found from the points of {name.name}")
     progress(1)
-    return FoundSettings(known.title, GearSet(found), how_well)
+    return FoundSettings(known.title, GearSet(found.pair), found)
 
 
 @dataclass(frozen=True, repr=False)

@@ -96,6 +96,10 @@ class GearMethod(Sheet):
     blade_edge_radius: EdgeRadius | None = None
 
 
+#: What may be asked for in the place of transmission error, path and pattern.
+CROWNINGS = ("lengthwise_crowning", "profile_crowning", "bias")
+
+
 class ContactRequest(Sheet):
     """What is asked of the contact of one side.
 
@@ -121,7 +125,7 @@ class ContactRequest(Sheet):
     @model_validator(mode="after")
     def _one_way(self) -> ContactRequest:
         ways = (
-            ("lengthwise_crowning", "profile_crowning", "bias"),
+            CROWNINGS,
             ("transmission_error", "path_angle", "pattern_length"),
         )
         given = [[name for name in names if name in self.model_fields_set] for names in ways]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import difflib
+import math
 import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, get_args
@@ -67,6 +68,7 @@ def sentence(error: ValidationError, model: type[Spec]) -> str:
     if near:  # the key that is meant is missing, then, and no fault of its own
         return f"{_dotted(loc)}: no such key; did you mean {near[0]}?{more}"
     what, key = _words([detail for detail in details if detail["loc"] == loc]), _dotted(loc)
+    what += _radians(model, first)
     if first["type"] == "value_error" and loc and _names_a_key(what, _keys(model, loc)):
         return f"{key}.{what}{more}"
     if first["type"] == "missing" and loc and isinstance(loc[-1], int):
@@ -75,6 +77,24 @@ def sentence(error: ValidationError, model: type[Spec]) -> str:
         what = f"the section [{key}] is missing"
     value = "" if first["type"] == "missing" or isinstance(first["input"], dict) else f" = {_short(first['input'])}"
     return f"{key}{value}: {what}{more}" if key else f"{what}{more}"
+
+
+def _radians(model: type[Spec], detail: Mapping[str, Any]) -> str:
+    """What is said of an angle that is too small, and would not be if it were in radians."""
+    value, limits = detail["input"], detail.get("ctx", {})
+    at: type[BaseModel] = model
+    least = limits.get("ge", limits.get("gt"))
+    if least is None or isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= math.pi:
+        return ""
+    *tables, key = detail["loc"] or ("",)
+    for part in tables:
+        at = (table_in(at.model_fields[part].annotation) if part in at.model_fields else None) or at
+    marks = at.model_fields[key].metadata if key in at.model_fields else []
+    most = [getattr(one, name) for one in marks for name in ("le", "lt") if hasattr(one, name)]
+    degrees = math.degrees(value)
+    if not any(getattr(one, "name", "") == "degree" for one in marks) or not least <= degrees <= min(most, default=360):
+        return ""
+    return f"; angles are in degrees, and {value:g} rad are {degrees:.4g}"
 
 
 def _names_a_key(what: str, keys: Sequence[str]) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from itertools import chain
@@ -27,6 +28,8 @@ _PRESSURE_ANGLE = 22.5
 #: those a pinion that has more of the depth as its addendum.
 _SHALLOWER, _LONGER_PINION = Teeth(0.9), Teeth(0.9, 0.8)
 
+#: Usual spiral angles [degree]: one in radians would be one of these.
+_RADIANS = (10.0, 50.0)
 #: A pair, its figures, and the contact of both sides.
 _Judged = tuple[Designed, dict[str, Any], dict[str, Mesh]]
 
@@ -57,8 +60,18 @@ def accepted(data: DesignData, name: str = "design data", given: BevelSet | None
             if found is not None:
                 break
     if found is None:
-        raise why[0]
+        raise _in_degrees(data, why[0])
     return found
+
+
+def _in_degrees(data: DesignData, error: InputError | ComputationError) -> InputError | ComputationError:
+    """The error, with a word where the spiral angle that the file gives would be a usual one if it were in radians."""
+    angle = data.mean_spiral_angle
+    if not (_RADIANS[0] <= math.degrees(angle) <= _RADIANS[1]):
+        return error
+    return type(error)(
+        f"{error}; mean_spiral_angle = {angle:g} is in degrees, and {angle:g} rad would be {math.degrees(angle):.4g}"
+    )
 
 
 def _tried(

@@ -14,7 +14,7 @@ from gearmath.bevel.design.rolling import GearFlank, Meeting, Roll
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import Blank, Member
-from gearmath.specs.design import ContactRequest
+from gearmath.specs.design import CROWNINGS, ContactRequest
 
 #: Rows and columns of the gear's flank on which the gap is wanted, and heights at which its mate's tip is sought.
 _ROWS, _COLUMNS, _HEIGHTS = 7, 13, 41
@@ -34,8 +34,9 @@ class Request:
 
     ``place`` z_w, r_w of the vertex on the gear [mm]; ``parabola`` m' [rad/rad²]; ``path_angle`` on the gear,
     ``own_path`` on the pinion [rad]; ``semi_axis`` [mm]; ``difference`` D (3,) and ``curvature`` K_2 + D (2,2) [1/mm];
-    ``roll`` of chapter 26; ``meeting`` and ``gap`` [mm] at places (n,) of the gear's flank that the pinion's tip
-    reaches; ``inner`` (n,) are those about the middle. ``yielding`` is what the curvature across the path may lose
+    ``roll`` of chapter 26; ``meeting`` and ``gap`` [mm] at ``places`` z_w, r_w (n,) of the gear's flank that the
+    pinion's tip reaches, which lie so far ``from_vertex`` in cone distance and height (n,) [mm]; ``inner`` (n,) are
+    those about the middle. ``yielding`` is what the curvature across the path may lose
     [1/mm] where the whole flank needs it: nothing if the length of the ellipse is asked for. ``words`` are the keys of
     what is asked.
     """
@@ -52,6 +53,8 @@ class Request:
     curvature: np.ndarray
     meeting: Meeting
     gap: np.ndarray
+    places: tuple[np.ndarray, np.ndarray]
+    from_vertex: tuple[np.ndarray, np.ndarray]
     inner: np.ndarray
     yielding: float
     words: str
@@ -91,11 +94,11 @@ def request(
         D, own, path, parabola, semi_axis = _crowned(asked, roll, surface.blank)
         yielding = 0.0
     meeting, places, along, inner = _flank(gear, roll, lowest)
+    off = _from_vertex(places, (axial, radial), surface.pitch_angle)
     if asked.lengthwise_crowning is None:
         lever = np.full(len(along), abs(roll.lever))
         (gap,) = kernel("wanted_gap")(meeting.rotation, along, D, w, roll.acceleration, np.abs(meeting.lever), lever)
     else:
-        off = _from_vertex(places, (axial, radial), surface.pitch_angle)
         (gap,) = kernel("crowned_gap")(*off, *_crownings(asked, surface.blank))
     return Request(
         side,
@@ -110,6 +113,8 @@ def request(
         roll.gear_curvature + matrix(D),
         meeting,
         gap,
+        places,
+        off,
         inner,
         yielding,
         _words(asked, path),
@@ -118,8 +123,7 @@ def request(
 
 def _words(asked: ContactRequest, path: float) -> str:
     """The keys of what is asked of a side, with their values."""
-    names = ["lengthwise_crowning", "profile_crowning", "bias"]
-    given = {name: getattr(asked, name) for name in names}
+    given = {name: getattr(asked, name) for name in CROWNINGS}
     if asked.lengthwise_crowning is None:
         given = {
             "transmission_error": asked.transmission_error,
@@ -157,9 +161,12 @@ def _crowned(asked: ContactRequest, roll: Roll, blank: Blank) -> tuple[np.ndarra
 
 def _crownings(asked: ContactRequest, blank: Blank) -> tuple[float, ...]:
     """Face width, working depth and the three crownings [mm]."""
-    depth = blank.mean_addendum + blank.mean_dedendum - blank.clearance
-    wanted = [(one or 0.0) / 1000 for one in (asked.lengthwise_crowning, asked.profile_crowning, asked.bias)]
-    return (blank.face_width, depth, *wanted)
+    return (*face_and_depth(blank), *((getattr(asked, name) or 0.0) / 1000 for name in CROWNINGS))
+
+
+def face_and_depth(blank: Blank) -> tuple[float, float]:
+    """Face width and working depth [mm]."""
+    return blank.face_width, blank.mean_addendum + blank.mean_dedendum - blank.clearance
 
 
 def matrix(components: np.ndarray) -> np.ndarray:
@@ -217,9 +224,9 @@ def _from_vertex(
     places: tuple[np.ndarray, np.ndarray], vertex: tuple[float, float], pitch_angle: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """How far places z_w, r_w (n,) of the gear lie from the vertex in cone distance and height (n,) [mm]."""
-    z, r = (place - at for place, at in zip(places, vertex, strict=True))
-    along, deep = kernel("root_place")(np.stack([r, 0 * r, z], axis=1), pitch_angle)
-    return along, -deep
+    z, r = (np.append(place, at) for place, at in zip(places, vertex, strict=True))
+    along, deep = kernel("root_place")(np.stack([r, 0 * r, z], axis=1), pitch_angle)  # of radii, which have no sign
+    return along[:-1] - along[-1], deep[-1] - deep[:-1]
 
 
 def _flank(

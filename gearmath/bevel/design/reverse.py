@@ -25,6 +25,7 @@ from gearmath.bevel.design.reverse_start import (
     space_turn,
 )
 from gearmath.errors import ComputationError, InputError
+from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS, Member
 
 #: Settings leave at most so much of a flank, RMS [mm], or they do not reproduce it.
@@ -92,12 +93,16 @@ class ReversedFlank:
         }
 
 
-@dataclass(frozen=True)
-class ReversedMember:
+@dataclass(frozen=True, repr=False)
+class ReversedMember(Shown):
     """A member that reproduces given flanks, and how well it does, by flank."""
 
     member: Member
     flanks: dict[str, ReversedFlank]
+
+    def _shown(self) -> tuple[str, list[Shows]]:
+        figures: list[Shows] = [(f"{flank}: RMS", 1000 * found.rms, "um") for flank, found in self.flanks.items()]
+        return f"member of {self.member.teeth} teeth", figures
 
 
 def reverse(known: KnownMember, given: dict[str, GivenFlank], name: str) -> ReversedMember:

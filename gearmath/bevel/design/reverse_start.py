@@ -42,7 +42,8 @@ class KnownMember:
 
     ``hand`` is None where the points have to tell it, ``cutter_radius``, the mean one of the cutter, where their
     curvature has to. ``edges`` are the edge radii of its blades by flank, which no point of a flank tells; ``unlike``
-    is the key of a blade that is not straight, and of its value.
+    is the key of a blade that is not straight, and of its value. ``thickness`` [mm] is the transverse arc of the tooth
+    at the mean point, None where the file does not tell it.
     """
 
     teeth: int
@@ -54,6 +55,7 @@ class KnownMember:
     cutter_radius: float | None = None
     edges: Mapping[str, float] = field(default_factory=dict)
     unlike: tuple[str, float] | None = None
+    thickness: float | None = None
 
 
 @dataclass(frozen=True)

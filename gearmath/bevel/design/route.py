@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearmath.bevel.blank import BevelBlank
+from gearmath.bevel.blank import WIDEST_FACE, BevelBlank
 from gearmath.bevel.check_blade import check_edge
-from gearmath.bevel.check_blank import check_blank
+from gearmath.bevel.check_blank import NARROWEST_FACE, check_blank
 from gearmath.bevel.contact.report import SIDES as OWN
 from gearmath.bevel.contact.surface import nominal_surface
 from gearmath.bevel.crown_gear import Method, crown_gear_set
@@ -66,6 +66,12 @@ def design(
             "cut at once"
         )
     blank_data, blank = blank_for(data, name, teeth)
+    narrowest, widest = (share * blank.outer_cone_distance for share in (NARROWEST_FACE, WIDEST_FACE))
+    if data.face_width < narrowest:
+        raise InputError(
+            f"{name}: face_width = {data.face_width:g}: must lie between {narrowest:.4g} and {widest:.4g} mm, "
+            f"{NARROWEST_FACE:g} and {WIDEST_FACE:g} of the outer cone distance"
+        )
     start = _crown_gear(data, blank_data, blank)
     for member in ("pinion", "gear"):
         check_blank(start.member(member), member)  # before anything is computed for it

@@ -13,8 +13,10 @@ from gearmath.bevel.contact.mesh import Mesh
 from gearmath.bevel.contact.report import ARCSEC, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
+from gearmath.bevel.design.crownings import crownings, miss
 from gearmath.bevel.design.local_settings import ACROSS
 from gearmath.bevel.design.route import Designed
+from gearmath.bevel.design.take_over import advice, reason
 from gearmath.bevel.design.tip_edges import HIGHEST_RIDGE
 from gearmath.bevel.grid import over_reach
 from gearmath.bevel.pair import check_computed
@@ -189,26 +191,10 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             "position must be given, or the path come nearer to 90 degrees"
         )
     if run.outcome != "interior contact" or found is None:
-        changes: tuple[str, ...] = (
-            (
-                f"a smaller profile_crowning (now {asked.profile_crowning:g} um)",
-                f"another bias (now {asked.bias:g} um)",
-            )
-            if crowned
-            else (
-                "a path nearer to the length of the tooth "
-                f"(path_angle, now {math.degrees(flank.request.path_angle):.4g} degrees)",
-                f"a smaller transmission_error (now {asked.transmission_error:g} arcsec)",
-                f"a shorter pattern_length (now {asked.pattern_length:g})",
-            )
-        )
-        if asked.position is not None:
-            changes += (f"a position nearer to the middle (now {asked.position[0]:g}, {asked.position[1]:g})",)
-        changes += ("finer steps in [shop]",) * stepped
-        raise EdgeContact(
-            f"{side}: {run.outcome}: one pair of teeth does not take over from the next within the flanks, where the "
-            f"contact ratio is {run.contact_ratio:.3g}: {', '.join(changes[:-1])} or {changes[-1]} is needed"
-        )
+        at = None if found is None else found.touch.rotation
+        free, rms = made.data.pinion.may_change, 1000 * flank.fitted.rms
+        helps = advice(run.outcome, asked, flank.request, rms, free, stepped)
+        raise EdgeContact(f"{side}: {run.outcome}: {reason(run, at)}: {helps} is needed")
     second, wanted = found.local.second_derivative, flank.request.parabola
     if not stepped and not abs(second - wanted) <= PARABOLA * abs(wanted):
         raise InputError(
@@ -217,8 +203,10 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
         )
     spread = run.leads.peak_to_peak
     lag = [None if math.isnan(one) else one * ARCSEC for one in found.lag]
+    crowning, rms = crownings(made.pair, flank.name, flank.request, asked), 1000 * flank.fitted.rms
     return {
         "outcome": run.outcome,
+        "remarks": [one for one in (miss(rms, crowning), _parabola_off(second, wanted)) if one],
         "contact_ratio": run.contact_ratio,
         "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
         "second_derivative": {"asked": wanted, "found": second},
@@ -233,10 +221,21 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             "found": math.degrees(found.local.path_angle),
         },
         "semi_axes_mm": {"asked_major": flank.request.semi_axis, "found": list(found.local.semi_axes)},
-        "ease_off_rms_um": flank.fitted.rms * 1000,
+        "crownings_um": crowning,
+        "ease_off_rms_um": rms,
         "share_of_flank": flank.share,
         "bounds_reached": ["pattern_length" if one == ACROSS else one for one in flank.fitted.active],
     }
+
+
+def _parabola_off(second: float, wanted: float) -> str:
+    """What to say of a parabola that the steps of the shop make another one; empty where they do not."""
+    if abs(second - wanted) <= PARABOLA * abs(wanted):
+        return ""
+    return (
+        f"the steps of [shop] change the second derivative at the vertex by {second / wanted - 1:+.1%}, where "
+        f"{PARABOLA:.0%} is no remark, and the transmission error with it: finer steps keep it"
+    )
 
 
 def _asked_place(made: Designed, side: str) -> tuple[float, float]:

@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -158,6 +159,14 @@ def comment(name: str, text: str) -> str:
             f"{name}: comment {text[:40]!r}...: {len(line) + 1} characters, {MAX_BLOCK_CHARACTERS} allowed"
         )
     return line
+
+
+def check_target(target: Path) -> None:
+    """Refuse a file whose name gives a program none that the control takes. Raises InputError naming the option -o."""
+    try:
+        check_name(target.stem)
+    except InputError as error:
+        raise InputError(f"-o {target}: {error}") from error
 
 
 def check_name(name: str) -> None:

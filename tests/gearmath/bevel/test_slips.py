@@ -309,3 +309,17 @@ def test_misprints_are_of_the_digits_as_they_are_written() -> None:
     assert 118.9 not in wrong_digits(18.9)
     assert list(wrong_digits(0.0)) == list(exchanged_digits(0.0)) == []
     assert list(exchanged_digits(float("nan"))) == list(wrong_digits(1e300)) == []
+
+
+@pytest.mark.parametrize(
+    ("key", "flank", "value"), [("blade_point_radius", "convex", 0.4), ("work_rotation_offset", "concave", 1.5)]
+)
+def test_small_change_that_shows_in_the_backlash_alone_gets_no_slip_of_another_setting(key, flank, value, tmp_path):
+    """Hundredths of a dozen settings would do, by digits or signs of what is small: none of them is named."""
+
+    def change(values: dict) -> None:
+        values["pinion"][flank][key] = round(values["pinion"][flank][key] + value, 2)
+
+    text = refusal(SPIRAL, change, tmp_path)
+    assert "the pair has a transverse backlash of " in text
+    assert "it would be a pair with" not in text

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomlkit
 
 from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.nominal_file import nominal_flank
@@ -32,7 +35,13 @@ def test_set_of_the_settings_found_is_a_member_with_the_figures_of_the_json(comm
     status, out, err = command("design", "--reverse", points, data, "-o", target, "--json")
     assert (status, err) == (0, "")
     found = json.loads(out)
-    assert list(load_pair(target).members) == [found["member"]] == ["pinion"]
+    assert found["member"] == "pinion"
+    with_mate = data == "spiral_7x43.toml"
+    assert list(load_pair(target).members) == ["pinion", "gear"][: 1 + with_mate]
+    assert found["notes"] == ["the gear is that of the file of the blank"] * with_mate
+    assert found["tooth_thickness_mm"]["found"] == pytest.approx(found["tooth_thickness_mm"]["blank"], abs=0.15)
+    if with_mate:
+        assert load_pair(target).gear == load_pair(bundled(data)).gear
     for flank in FLANKS:
         figures = found[flank]
         assert figures["points"] == 45
@@ -46,6 +55,29 @@ def test_text_says_what_was_fitted_and_what_is_left(command, points, tmp_path):
     assert status == 0
     assert "concave flank, 45 points: all but the scatter of its points is reproduced" in out
     assert "work_rotation_offset.2" in out
+    assert "bounds reached" not in out  # none held anything back
+
+
+def test_points_that_are_larger_than_the_blank_and_a_gear_that_is_no_mate_are_said(command, tmp_path):
+    """Points larger by a hundredth, away from the apex: a flank of its own; and a gear cut by a millimetre too wide."""
+    member = load_bevel_set(bundled("spiral_7x43.toml")).member("pinion")
+    file = join([nominal_flank(member, "pinion", flank, blank_grid(member)) for flank in FLANKS])
+    path, given, target = tmp_path / "points.csv", tmp_path / "given.toml", tmp_path / "set.toml"
+    write_flank_csv(path, replace(file, point=1.01 * file.point))
+    values = tomllib.loads(bundled("spiral_7x43.toml").read_text("utf-8"))
+    values["gear"]["concave"]["blade_point_radius"] += 1.0
+    given.write_text(tomlkit.dumps(values), "utf-8")
+    status, out, _ = command("design", "--reverse", path, given, "-o", target, "--json")
+    assert status == 0
+    found = json.loads(out)
+    middle = found["middle_cone_distance_mm"]
+    along = np.linalg.norm(1.01 * file.point, axis=1)
+    assert middle["points"] == pytest.approx((along.min() + along.max()) / 2, abs=1e-6)
+    assert middle["blank"] == member.blank.mean_cone_distance
+    said, *others = found["notes"]
+    assert "nearer to the heel than the mean point of the blank: unless they are of this part" in said
+    assert others[-1].startswith("the gear of the file of the blank is left out, it is no mate of this pinion: ")
+    assert list(load_pair(target).members) == ["pinion"]
 
 
 def test_points_of_another_machine_laid_on_another_set_give_the_flank_that_they_are_of(command, tmp_path):

@@ -201,7 +201,7 @@ def test_subprograms_are_refused_with_line_and_column(refused, tmp_path, pinion_
 
 @pytest.mark.parametrize("name", ["1ST.MPF", "P-1.MPF", "A_PROGRAM_NAME_THAT_IS_TOO_LONG.MPF", "COM1.MPF"])
 def test_file_name_that_is_no_program_name_is_refused(refused, tmp_path, name):
-    refused("program name ", *CUT, "-o", tmp_path / name)
+    refused(f"-o {tmp_path / name}: program name ", *CUT, "-o", tmp_path / name)
     assert list(tmp_path.iterdir()) == []
 
 

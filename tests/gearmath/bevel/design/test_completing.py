@@ -13,6 +13,7 @@ from gearmath.bevel.contact.report import ARCSEC, SIDES, side_mesh
 from gearmath.bevel.contact.system import Assembly, System, TouchPoint
 from gearmath.bevel.crown_gear import Method, crown_gear_set
 from gearmath.bevel.design import completing
+from gearmath.bevel.design.crownings import crownings, miss
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.verdict import verdict, vertex
 from gearmath.bevel.ease_off import ease_off, parts
@@ -175,6 +176,29 @@ def test_crownings_that_are_asked_for_are_those_of_the_ease_off_about_the_vertex
     assert found.crowning / part**2 == pytest.approx(30.0, abs=0.6)
     assert found.profile_crowning / part**2 == pytest.approx(4.0, abs=0.3)
     assert found.twist / part**2 == pytest.approx(3.0, abs=0.8)
+    # over the whole flank the third and fourth order count
+    whole = crownings(made.pair, SIDES[side], made.flanks[side].request, made.data.contact(side))
+    assert whole is not None
+    for name, value in asked.items():
+        assert whole[name] == {"asked": value, "found": pytest.approx(value, abs=1.0)}, name
+    rms = 1000 * made.flanks[side].fitted.rms
+    assert rms < 1.5
+    assert miss(rms, whole) == ""
+
+
+def test_crownings_that_one_machine_does_not_give_both_flanks_are_said() -> None:
+    """Bias of 10 um on one flank and -10 um on the other, cut completing without tilt and helical motion."""
+    crowned = {"lengthwise_crowning": 30.0, "profile_crowning": 10.0}
+    sides = {"drive": {**crowned, "bias": 10.0}, "coast": {**crowned, "bias": -10.0}}
+    made = design(checked({**MILLED, "pinion": {"cutting": "completing", "free": []}, **sides}, DesignData, "crowned"))
+    for side in SIDES:
+        found = crownings(made.pair, SIDES[side], made.flanks[side].request, made.data.contact(side))
+        rms = 1000 * made.flanks[side].fitted.rms
+        said = miss(rms, found)
+        assert found is not None
+        assert f"misses what was asked by {rms:.3g} um RMS, where 5 um are no miss" in said
+        assert f"lengthwise_crowning {found['lengthwise_crowning']['found']:.3g} um, asked 30" in said
+        assert "profile_crowning" not in said
 
 
 @pytest.mark.parametrize(

@@ -209,6 +209,18 @@ def test_settings_come_in_the_steps_of_the_shop() -> None:
     for side in SIDES:
         second = figures[side]["second_derivative"]
         assert second["found"] == pytest.approx(second["asked"], rel=0.05)
+        assert figures[side]["remarks"] == []
+
+
+def test_steps_that_make_another_parabola_are_said() -> None:
+    """A step of 0.001 of the ratio of roll is a large part of what gives the transmission error its curvature."""
+    figures, _ = verdict(design(data(GENERATED, shop={"angle_step": 0.05, "length_step": 0.05, "ratio_step": 1e-3})))
+    for side in SIDES:
+        second = figures[side]["second_derivative"]
+        off = second["found"] / second["asked"] - 1
+        assert abs(off) > 0.03
+        (said,) = figures[side]["remarks"]
+        assert f"change the second derivative at the vertex by {off:+.1%}, where 2% is no remark" in said
 
 
 def test_pinion_to_a_given_gear_leaves_gear_and_blanks_alone() -> None:
@@ -228,7 +240,9 @@ def test_what_is_held_at_the_mean_point_does_not_give_way_to_the_whole_flank() -
     assert np.abs(free.request.curvature - held.request.curvature).max() < 1e-12
 
 
-def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_wide_and_too_narrow_a_face_are_refused_before_anything_is_computed_for_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """0.35 of the outer cone distance are allowed, as in a set: it is 66 mm / sin(71.565 degrees) = 69.57 mm here."""
     monkeypatch.setattr("gearmath.bevel.design.route.request", None)
     data = {
@@ -239,7 +253,9 @@ def test_too_wide_a_face_is_refused_before_anything_is_computed_for_it(monkeypat
         "face_width": 25.0,
         "cutter": {"cutter_radius": 70.0},
     }
-    with pytest.raises(
-        InputError, match=r"^design data: face_width = 25: must be at most 0\.35 of the outer cone distance, 24\.35 mm"
+    for width, sentence in (
+        (25.0, r"face_width = 25: must be at most 0\.35 of the outer cone distance, 24\.35 mm"),
+        (2.0, r"face_width = 2: must lie between 6\.957 and 24\.35 mm, 0\.1 and 0\.35 of the outer cone distance"),
     ):
-        design(checked(data, DesignData, "wide"))
+        with pytest.raises(InputError, match=f"^design data: {sentence}$"):
+            design(checked({**data, "face_width": width}, DesignData, "wide"))

@@ -240,7 +240,7 @@ def test_blades_of_the_set_that_the_blank_is_of_are_kept_where_straight_and_refu
         with pytest.raises(InputError, match=said):
             reversed_set(load_known(path), file, "test")
         return
-    found, _ = reversed_set(load_known(path), file, "test")
+    found = reversed_set(load_known(path), file, "test").pair
     assert found.pinion is not None
     assert (found.pinion.concave.blade_edge_radius, found.pinion.convex.blade_edge_radius) == (0.4, 0.0)
 
