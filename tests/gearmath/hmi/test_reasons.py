@@ -165,3 +165,22 @@ def test_each_part_is_one_that_the_library_says() -> None:
         if len(longest) > 12 and longest not in said:
             lost.append(english)
     assert len(lost) <= 15, "\n".join(lost)
+
+
+@pytest.mark.parametrize(
+    ("sentence", "word"),
+    [
+        ("mill: ready for PROBE.MPF, 1 touch: start it on the control", "1 Antastung:"),
+        ("mill: ready for PROBE.MPF, 1 touch, 3 in later starts: start it on the control", "1 Antastung, 3"),
+        ("mill: no program is selected, must be PROBE.MPF: select it at the machine", "kein Programm"),
+        ("mill: OTHER.MPF is selected, must be PROBE.MPF: select it at the machine", "OTHER.MPF ist angewählt"),
+        ("mill: point 5 is offered, the first one that is missing is 4", "Punkt 5"),
+    ],
+)
+def test_what_a_control_has_of_a_run_is_said_in_german_for_one_touch_and_none_selected(
+    sentence: str, word: str
+) -> None:
+    said = Text("de").quoted(sentence)
+    assert word in said
+    assert "Englisch" not in said
+    assert not _english(sentence)
