@@ -52,13 +52,17 @@ def load(path: Path, model: type[SpecT]) -> SpecT:
 
 def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     """Check TOML text against ``model``; ``name`` is the file's name in the messages."""
+    return _checked(tables(text, name), model, model.from_file, name)
+
+
+def tables(text: str, name: str) -> dict[str, Any]:
+    """What TOML text holds. Raises InputError naming the file, and the line where it is no TOML."""
     try:
-        values = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{name}: is no TOML: {error}{_line(text, str(error))}") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{name}: is no TOML: a number of thousands of digits, or lists within lists") from error
-    return _checked(values, model, model.from_file, name)
 
 
 def _line(text: str, refusal: str) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from nicegui import ui
 
 from gearmath.hmi import acting, blocks, widgets
-from gearmath.hmi.catalog import check, files_of
+from gearmath.hmi.catalog import check, files_of, unreadable
 from gearmath.hmi.correcting import free_file
 from gearmath.hmi.desk import Draft
 from gearmath.hmi.gear_contact import GearContact
@@ -59,6 +59,8 @@ class _GearPage:
                 chosen = shared.choice.member
                 widgets.choice(text("gear.member"), members, chosen, lambda name: self._choose(member=name))
         widgets.note(text("gear.bundled"))
+        for why in unreadable(shared.folder):
+            widgets.Message(text("gear.unreadable", why=widgets.words_of(why)), "warning")
 
     def blank(self, found: Draft) -> None:
         """What the set is, and the blank of the member."""
