@@ -135,7 +135,7 @@ def test_settings_are_called_as_their_fields_are() -> None:
 
 def test_what_is_not_known_stays_english_as_a_whole_and_is_said_to_be_english() -> None:
     sentence = "simulated control: alarm 65001: coolant pump is out of order"
-    assert Text("de").quoted(sentence) == f"Begründung auf Englisch: {sentence}"
+    assert Text("de").quoted(sentence) == f"Auf Englisch: {sentence}"
     assert Text("en").quoted(sentence) == sentence
     assert Text("de").quoted("") == ""
 
