@@ -20,8 +20,10 @@ def check_place(path: Path) -> None:
     """Whether a file can be written to its folder. Raises InputError naming the file where it cannot."""
     if not path.parent.is_dir():
         raise InputError(f"{path}: cannot be written: No such file or directory")
-    if not os.access(path.parent, os.W_OK):
-        raise InputError(f"{path}: cannot be written: Permission denied")
+    try:
+        tempfile.TemporaryFile(dir=path.parent).close()  # not os.access, which grants root what no file system does
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
 
 
 def check_writable(path: Path) -> None:

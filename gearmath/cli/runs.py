@@ -24,12 +24,19 @@ def store_option(words: str = "The measurement store.") -> Callable[[Callable[..
         "--store",
         "store_file",
         type=click.Path(path_type=Path),
+        callback=_named,
         default="runs.db",
         show_default=True,
         envvar="GEARMATH_STORE",
         show_envvar=True,
         help=words,
     )
+
+
+def _named(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
+    if path == Path():  # an empty name too
+        raise InputError("--store: must name a file, such as runs.db, not be empty or '.'")
+    return path
 
 
 STORE = store_option()

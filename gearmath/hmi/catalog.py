@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Mapping
 from importlib import resources
 from pathlib import Path
@@ -12,7 +11,7 @@ from gearmath.errors import InputError
 from gearmath.files import read_text
 from gearmath.front.machines import load_hobber, load_machine, load_probe
 from gearmath.front.sets import load_set
-from gearmath.specs.toml import find
+from gearmath.specs.toml import find, tables
 
 #: A key, with dots between tables, that a file of each kind has, and no other; one of these.
 _KEYS = {
@@ -34,11 +33,22 @@ _LARGEST = 1_000_000
 def files_of(kind: str, folder: Path) -> dict[str, str]:
     """What may be chosen of a ``kind``, gear_set or hobber: path or bundled name, and the name that is shown.
 
-    A file of the folder comes first; one that is no TOML is none.
+    A file of the folder comes first; one that is no TOML is none, and :func:`unreadable` says why.
     """
     here = {str(path): path.name for path in _toml(folder) if _is(kind, path)}
     packaged = Path(str(resources.files("gearmath") / "data"))
     return here | {path.name: f"{path.name} *" for path in _toml(packaged) if _is(kind, path)}
+
+
+def unreadable(folder: Path) -> list[InputError]:
+    """Why files of the folder are in no list: each that cannot be read or is no TOML, in a sentence that names it."""
+    found = []
+    for path in _toml(folder):
+        try:
+            tables(read_text(path, _LARGEST), str(path))
+        except InputError as error:
+            found.append(error)
+    return found
 
 
 def check(kind: str, name: str) -> None:
@@ -60,8 +70,8 @@ def _toml(folder: Path) -> list[Path]:
 
 def _is(kind: str, path: Path) -> bool:
     try:
-        values: Mapping[str, Any] = tomllib.loads(read_text(path, _LARGEST))
-    except (InputError, ValueError, RecursionError):
+        values = tables(read_text(path, _LARGEST), str(path))
+    except InputError:
         return False
     return any(_has(values, key.split(".")) for key in _KEYS[kind])
 

@@ -10,6 +10,8 @@ from gearmath.errors import InputError
 _NUMBER = r"(?:0(?:\.[0-4]\d*)?|\d(?:\.\d+)?e-\d\d)"  # as Python prints it: 0.1, 0, 1e-05
 #: What the header may say: both margins up the profile and along the tooth, or root, tip, toe and heel.
 PATTERN = rf"{_NUMBER},{_NUMBER}(?:,{_NUMBER},{_NUMBER})?"
+#: How far a grid may reach beyond the flank, as a part of it; a file of measured points has none of that.
+BEYOND = 0.1
 #: In place of margins: every point has a place of its own, listed, or as another measuring machine takes it.
 OWN = "own"
 
@@ -26,9 +28,9 @@ class Margins:
     def __post_init__(self) -> None:
         for low, high in (("root", "tip"), ("toe", "heel")):
             one, other = getattr(self, low), getattr(self, high)
-            if not (one >= 0 and other >= 0 and one + other < 1):
+            if not (one >= -BEYOND and other >= -BEYOND and one + other < 1):
                 raise InputError(
-                    f"margins: {low} = {one}, {high} = {other}: must be at least 0, and less than 1 together"
+                    f"margins: {low} = {one}, {high} = {other}: must be at least {-BEYOND:g}, and less than 1 together"
                 )
 
     @classmethod

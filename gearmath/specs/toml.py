@@ -54,18 +54,23 @@ def load(path: Path, model: type[SpecT]) -> SpecT:
 
 def parse(text: str, model: type[SpecT], name: str) -> SpecT:
     """Check TOML text against ``model``; ``name`` is the file's name in the messages."""
+    return _checked(tables(text, name, described(model)), model, model.from_file, name)
+
+
+def tables(text: str, name: str, wanted: str | None = None) -> dict[str, Any]:
+    """What TOML text holds. Raises InputError naming the file, and the line where it is no TOML.
+
+    Text of another kind than ``wanted``, such as a program, is called what it is.
+    """
     try:
-        values = tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         kind = kind_of(text)
-        if kind is not None and described(model) is not None:
-            raise InputError(
-                f"{name}: is no TOML: it describes {kind}; the file of {described(model)} is wanted"
-            ) from error
+        if kind is not None and wanted is not None:
+            raise InputError(f"{name}: is no TOML: it describes {kind}; the file of {wanted} is wanted") from error
         raise InputError(f"{name}: is no TOML: {error}{_line(text, str(error))}") from error
     except (ValueError, RecursionError) as error:
         raise InputError(f"{name}: is no TOML: a number of thousands of digits, or lists within lists") from error
-    return _checked(values, model, model.from_file, name)
 
 
 def _line(text: str, refusal: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -80,3 +81,24 @@ def test_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     (tmp_path / "picture").write_bytes(b"ok \xff\xfe")
     with pytest.raises(InputError, match="picture: is no text file: byte 3 is not UTF-8"):
         read_text(tmp_path / "picture")
+
+
+@pytest.mark.parametrize(
+    ("store", "reason"),
+    [
+        ("/proc/x.db", "/proc/x.db: cannot be written: "),  # a folder that even root cannot add a file to
+        ("missing/x.db", "missing/x.db: cannot be written: "),
+        ("", "--store: must name a file, "),
+    ],
+)
+@pytest.mark.parametrize("verb", ["hmi", "runs"])
+def test_a_store_that_cannot_be_is_refused_at_once(
+    command: Callable[..., tuple[int, str, str]], verb: str, store: str, reason: str
+) -> None:
+    more = ("--port", 0) if verb == "hmi" else ("list",)
+    if verb == "runs" and store:
+        reason = store  # it is read only
+    status, out, err = command(verb, *more, "--store", store)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"gearmath: {reason}")
+    assert len(err.splitlines()) == 1

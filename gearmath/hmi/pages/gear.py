@@ -8,7 +8,7 @@ from pathlib import Path
 from nicegui import ui
 
 from gearmath.hmi import acting, blocks, widgets
-from gearmath.hmi.catalog import check, files_of
+from gearmath.hmi.catalog import check, files_of, unreadable
 from gearmath.hmi.correcting import free_file
 from gearmath.hmi.desk import Draft
 from gearmath.hmi.gear_contact import GearContact
@@ -60,6 +60,8 @@ class _GearPage:
                 chosen = shared.choice.member
                 widgets.choice(text("gear.member"), members, chosen, lambda name: self._choose(member=name))
         widgets.note(text("gear.bundled"))
+        for why in unreadable(shared.folder):
+            widgets.Message(text("gear.unreadable", why=widgets.words_of(why)), "warning")
 
     def unsaved(self) -> str:
         """For which other members something was typed that is not saved, whoever chose another one."""

@@ -13,7 +13,7 @@ from gearmath.front.machines import load_hobber
 from gearmath.gearbox.hobbed.classes import FigureClass
 from gearmath.gearbox.job import GearboxJob, ThreadPlan
 from gearmath.hmi import acting, blocks, widgets, words
-from gearmath.hmi.catalog import changed_at, check, files_of
+from gearmath.hmi.catalog import changed_at, check, files_of, unreadable
 from gearmath.hmi.drawing import drawn
 from gearmath.hmi.hobbing_job import (
     EDGES,
@@ -110,6 +110,8 @@ class _GearboxPage:
         options = files_of("hobber", self.shared.folder)
         options = options if desk.hobber in options else {desk.hobber: desk.hobber, **options}
         widgets.choice(text("gearbox.file"), options, desk.hobber, choose)
+        for why in unreadable(self.shared.folder):
+            widgets.Message(text("gear.unreadable", why=widgets.words_of(why)), "warning")
         blocks.follow(lambda: (desk.hobber, changed_at(desk.hobber)), self._wish)
 
     def _wish(self) -> None:

@@ -142,3 +142,27 @@ def test_a_file_that_is_damaged_while_it_is_in_use_is_named_on_every_page_and_co
             path.write_bytes(content)
             page.look()
             assert page.says() == said, what
+
+
+@pytest.mark.parametrize("name", ["gear", "gearbox"])
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_a_file_of_the_folder_that_is_in_no_list_is_named_with_the_reason(
+    build: Callable[..., Built],  # noqa: F811
+    tmp_path: Path,
+    name: str,
+    language: str,
+) -> None:
+    for what in ("no TOML", "not UTF-8", "a zero byte"):
+        path = tmp_path / f"{what.replace(' ', '_')}.toml"
+        path.write_bytes(bundled(Choice().gear_set).read_bytes())
+        DAMAGES[what](name, path)
+    (tmp_path / "whole.toml").write_bytes(bundled(Choice().gear_set).read_bytes())
+    (tmp_path / "other.toml").write_text("a = 1\n", "utf-8")
+    begin = Text(language)("gear.unreadable", why="")
+    said = [one for one in build(Shared(tmp_path / "runs.db"), name, language).says() if one.startswith(begin)]
+    assert [Path(re.findall(r"\S+[.]toml", one)[0]).name for one in said] == [
+        "a_zero_byte.toml",
+        "no_TOML.toml",
+        "not_UTF-8.toml",
+    ]
+    assert all(len(one.splitlines()) == 1 and not one.endswith(".toml") for one in said)

@@ -136,7 +136,7 @@ def test_settings_are_called_as_their_fields_are() -> None:
 
 def test_what_is_not_known_stays_english_as_a_whole_and_is_said_to_be_english() -> None:
     sentence = "simulated control: alarm 65001: coolant pump is out of order"
-    assert Text("de").quoted(sentence) == f"Begründung auf Englisch: {sentence}"
+    assert Text("de").quoted(sentence) == f"Auf Englisch: {sentence}"
     assert Text("en").quoted(sentence) == sentence
     assert Text("de").quoted("") == ""
 
@@ -173,3 +173,22 @@ def test_no_sentence_that_a_page_can_meet_names_an_option_of_a_command() -> None
     of_the_command = "hmi/app.py"  # which has no page yet
     named = {place: words for place, words in found.items() if re.search(r"(^|[ ('])--[a-z]", words)}
     assert {place: words for place, words in named.items() if not place.startswith(of_the_command)} == {}
+
+
+@pytest.mark.parametrize(
+    ("sentence", "word"),
+    [
+        ("mill: ready for PROBE.MPF, 1 touch: start it on the control", "1 Antastung:"),
+        ("mill: ready for PROBE.MPF, 1 touch, 3 in later starts: start it on the control", "1 Antastung, 3"),
+        ("mill: no program is selected, must be PROBE.MPF: select it at the machine", "kein Programm"),
+        ("mill: OTHER.MPF is selected, must be PROBE.MPF: select it at the machine", "OTHER.MPF ist angewählt"),
+        ("mill: point 5 is offered, the first one that is missing is 4", "Punkt 5"),
+    ],
+)
+def test_what_a_control_has_of_a_run_is_said_in_german_for_one_touch_and_none_selected(
+    sentence: str, word: str
+) -> None:
+    said = Text("de").quoted(sentence)
+    assert word in said
+    assert "Englisch" not in said
+    assert not _english(sentence)

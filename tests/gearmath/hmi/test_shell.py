@@ -94,7 +94,7 @@ def test_language_and_look_are_chosen_by_keyboard_and_stay(served: Served, opera
     one.key("Dunkel", "Space")
     one.page.locator("body.body--dark").wait_for()
     one.go("gear")
-    one.page.get_by_role("heading", level=1, name="Rad").wait_for()
+    one.page.get_by_role("heading", level=1, name="Radsatz").wait_for()
     one.page.locator("body.body--dark").wait_for()
 
 
