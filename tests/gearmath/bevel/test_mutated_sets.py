@@ -223,7 +223,7 @@ def by_name(case: tuple) -> str:
 
 @pytest.mark.slow
 def test_mutated_set_is_refused_in_one_sentence_or_is_a_pair(bases, mill, monkeypatch) -> None:
-    monkeypatch.setattr("gearmath.bevel.pair.likely", lambda *_: "")  # the advice has its own tests, and takes longer
+    monkeypatch.setattr("gearmath.bevel.blame.likely", lambda *_: "")  # the advice has its own tests, and takes longer
     originals = {name: checked(values, BevelSet, name) for name, values in bases.items()}
     sentences: list[str] = []
     accepted: list[tuple[str, str, BevelSet]] = []
