@@ -9,6 +9,7 @@ from itertools import chain
 from typing import Any
 
 from gearmath.bevel.contact.mesh import Mesh
+from gearmath.bevel.contact.report import SIDES
 from gearmath.bevel.design.given import check_given
 from gearmath.bevel.design.route import Designed, design
 from gearmath.bevel.design.start import USUAL, Teeth
@@ -17,8 +18,8 @@ from gearmath.errors import ComputationError, InputError
 from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.design import ContactRequest, DesignData
 
-#: Where a pair runs on edges: a path nearer to the length of the tooth lasts longer. [degree]
-_LONGER_PATH = {"drive": 35.0, "coast": 145.0}
+#: Where a pair runs on edges: paths nearer to the length of the tooth last longer; the least change first. [degree]
+_LONGER_PATHS = ({"drive": 42.0, "coast": 138.0}, {"drive": 35.0, "coast": 145.0})
 #: And with uniform depth the toe of a small pinion is undercut: the vertex lies so far from toe (0) to heel (1), and
 #: farther where that is not enough.
 _ALONG, _NEARER_TO_THE_HEEL = 0.5, (0.65, 0.68)
@@ -101,7 +102,7 @@ def _judged(changed: Changed, name: str, given: BevelSet | None) -> _Judged:
 def _on_edges(data: DesignData) -> Iterator[Changed]:
     """What may help a pair that runs on its edges."""
     yield from _with_paths(Changed(data))
-    free = [side for side in _LONGER_PATH if data.contact(side).position is None]
+    free = [side for side in SIDES if data.contact(side).position is None]
     if data.cutter.process == "face_hobbing" and free:
         for along in _NEARER_TO_THE_HEEL:
             yield Changed(data, {f"{side}.position[0]": along for side in free}, along)
@@ -126,10 +127,10 @@ def _not_cut(data: DesignData, given: BevelSet | None) -> Iterator[Changed]:
 def _with_paths(changed: Changed) -> Iterator[Changed]:
     """Paths nearer to the length of the tooth, where none is asked for."""
     data = changed.data
-    free = [side for side in _LONGER_PATH if _path_is_free(data.contact(side))]
-    if free:
-        sides = {side: data.contact(side).model_copy(update={"path_angle": _LONGER_PATH[side]}) for side in free}
-        values = {**changed.values, **{f"{side}.path_angle": _LONGER_PATH[side] for side in free}}
+    free = [side for side in SIDES if _path_is_free(data.contact(side))]
+    for path in _LONGER_PATHS if free else ():
+        sides = {side: data.contact(side).model_copy(update={"path_angle": path[side]}) for side in free}
+        values = {**changed.values, **{f"{side}.path_angle": path[side] for side in free}}
         yield replace(changed, data=data.model_copy(update=sides), values=values)
 
 
