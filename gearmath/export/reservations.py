@@ -25,6 +25,11 @@ def reservations(machine: HobbingMachine) -> tuple[str, ...]:
         found.append("No emergency stop (`pins.estop`): the board cannot see one.")
     if pins.index is None:
         found.append("No index pulse (`pins.index`): lost encoder edges are not noticed.")
+    if machine.driver.output == "direct" and machine.driver.step_active == "low":
+        found.append(
+            '`output = "direct"` with `step_active = "low"`: this is for inputs without opto-couplers, as the common '
+            'is at 0 V. Opto-couplers that are fed from + need `output = "open_collector"`.'
+        )
     if machine.profile != "lathe":
         found += _jobs(machine)
     turn = round(machine.motor_steps)

@@ -305,6 +305,16 @@ def test_what_a_machine_lacks_is_said_at_the_top(name: str) -> None:
         assert (f"`pins.{key}`" in top) == (getattr(given.pins, key) is None)
 
 
+def test_inputs_that_step_at_the_low_level_without_a_transistor_are_told_of() -> None:
+    given = machine("hobbing_default")
+    assert reservations(given) == ()
+    direct = given.model_copy(
+        update={"driver": given.driver.model_copy(update={"output": "direct", "step_active": "low"})}
+    )
+    (said,) = reservations(direct)
+    assert "Opto-couplers that are fed from + need" in said
+
+
 def test_run_up_that_the_table_cannot_follow_is_said_with_the_teeth_that_it_can() -> None:
     """A hob that is at its speed in T gains w/2 (w/a - T) steps, and w sqrt(2/a) before the first; 100 may wait."""
     given = machine("hobbing_default")
