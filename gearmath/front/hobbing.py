@@ -189,13 +189,13 @@ def plan(
     if known.profile == "lathe":
         if pitch is None or teeth is not None:
             raise InputError(f"{known.name} is a lathe: pitch is needed, and no teeth")
-        _refuse_in_vain("for a thread", hob=hob, helix=helix, cut=cut, feed=feed, shift=shift or None, pin=pin)
+        _refuse_for_a_thread(hob=hob, helix=helix, cut=cut, feed=feed, shift=shift or None, pin=pin)
         first = 1 if starts is None else starts
         return Job(known, plan_thread(known, pitch_of(pitch), first, hand or "right", rpm, run_up))
     if teeth is None or pitch is not None:
         raise InputError(f"{known.name} is a hobbing machine: teeth are needed, and no pitch")
     if helix is None:
-        _refuse_in_vain("without helix", hand=hand, cut=cut, feed=feed)
+        _refuse_without_helix(hand=hand, cut=cut, feed=feed)
     lead = _helix(helix, hand, cut or "climb", feed)
     made = plan_gear(known, teeth, starts, hob, rpm, lead, shift, pin, run_up)
     return Job(known, measurable(made, known, 0.0 if lead is None else lead.beta))
@@ -229,7 +229,7 @@ def hob(
     """
     known = hobber_of(machine)
     if helix is None:
-        _refuse_in_vain("without helix", hand=hand)
+        _refuse_without_helix(hand=hand)
     lead = _helix(helix, hand, "climb" if climb else "conventional", None if known.feed is not None else feed)
     prepared = setup(known, teeth, hob, starts, lead, shift, feed, face_width, rpm, seconds, climb, rule, hob_shift)
     rules: tuple[Rule, ...] = tuple(dict.fromkeys(rule for rule in (prepared.train.rule, compare) if rule))
@@ -259,7 +259,7 @@ def choose(
     """
     known = hobber_of(machine)
     if helix is None:
-        _refuse_in_vain("without helix", hand=hand)
+        _refuse_without_helix(hand=hand)
     lead = _helix(helix, hand, "climb", None)
     return search(known, wanted, module, teeth, face_width, lead, progress=begin(MOST_CUTS, "cut"))
 
@@ -272,11 +272,17 @@ def export_teensy(machine: HobbingMachine | str | Path, folder: str | Path) -> l
     return list(export(hobber_of(machine), Path(folder)))
 
 
-def _refuse_in_vain(where: str, **given: object) -> None:
+def _refuse_for_a_thread(**given: object) -> None:
     """Raise InputError for an argument that would change nothing."""
     for name, value in given.items():
         if value is not None:
-            raise InputError(f"{name} = {value!r}: has no meaning {where}")
+            raise InputError(f"{name} = {value!r}: has no meaning for a thread")
+
+
+def _refuse_without_helix(**given: object) -> None:
+    for name, value in given.items():
+        if value is not None:
+            raise InputError(f"{name} = {value!r}: has no meaning without helix")
 
 
 def _helix(angle: float | None, hand: Hand | None, cut: FeedSense, feed: float | str | None) -> Helix | None:

@@ -139,8 +139,9 @@ def cutting_plan(
     member = bevel_set.member(name)
     _, most = feed_limits(machine, job.dry_run)
     if job.feed > most:
-        limit = "the limit" if most == _MOST_FEED else f"max_feed_per_min of {machine.name}"
-        raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, {limit}")
+        if most == _MOST_FEED:
+            raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}")
+        raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, max_feed_per_min of {machine.name}")
     _, fastest = spindle_limits(member, name, machine, job.dry_run)
     if machine.spindle_speed_rpm[1] >= job.spindle_rpm > fastest:
         known = math.floor(100 * fastest) / 100
