@@ -140,7 +140,7 @@ def cutting_plan(
     _, most = feed_limits(machine, job.dry_run)
     if job.feed > most:
         if most == _MOST_FEED:
-            raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}")
+            raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, the limit")
         raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, max_feed_per_min of {machine.name}")
     _, fastest = spindle_limits(member, name, machine, job.dry_run)
     if machine.spindle_speed_rpm[1] >= job.spindle_rpm > fastest:
