@@ -7,8 +7,7 @@ from collections.abc import Iterator
 
 from gearmath.export.full_rate import full_rate_of_a_gear, full_rate_of_a_thread
 from gearmath.export.markdown import bullets
-from gearmath.export.reservations import SMALL, fewest_teeth, trial_teeth
-from gearmath.gearbox.job import TRIP
+from gearmath.export.reservations import SMALL, fewest_teeth, small_rpm, trial_teeth
 from gearmath.specs.hobbing import HobbingMachine
 from gearmath.specs.motion_limits import most_acceleration
 
@@ -189,12 +188,11 @@ def _pinions(machine: HobbingMachine) -> Iterator[str]:
     teeth = fewest_teeth(machine)
     if teeth <= SMALL:
         return
-    rpm = math.floor(machine.max_step_rate * SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
     yield (
         f"With {machine.hob_starts} start{'s' * (machine.hob_starts > 1)} of the hob the firmware takes {teeth} teeth "
         f"and more: at {machine.limits.hob_rpm:g} rpm fewer need more than {machine.max_step_rate} steps/s, and the "
         f"start says `too many steps/s` and `Set limit`. Write that limit into the machine file, for {SMALL} teeth "
-        f"`hob_rpm = {rpm}`, export again, and do not run the hob faster."
+        f"`hob_rpm = {small_rpm(machine)}`, export again, and do not run the hob faster."
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
-from gearmath.export.reservations import fewest_teeth
+from gearmath.export.reservations import fewest_teeth, steps_per_count
 from gearmath.gearbox.kernels import evaluate
 from gearmath.gearbox.motion import motion
 from gearmath.specs.hobbing import HobbingMachine
@@ -21,7 +21,7 @@ _MORE_TEETH = 200
 def full_rate_of_a_gear(machine: HobbingMachine) -> str:
     """The fewest teeth that the firmware takes, engaged while the hob turns: that asks nothing of the hob's run-up."""
     teeth, fastest = fewest_teeth(machine), float(machine.limits.hob_rpm)
-    per_count = _of_a_gear(machine, teeth)
+    per_count = steps_per_count(machine, teeth)
     rpm = math.floor(motion(machine, per_count, fastest).engage_rpm)
     turns = math.ceil(teeth / machine.hob_starts)
     return (
@@ -40,16 +40,11 @@ def _only_fast(machine: HobbingMachine, rpm: float) -> str:
     if rpm >= math.floor(fastest):
         return ""
     for teeth in range(fewest + 1, fewest + _MORE_TEETH):
-        per_count = _of_a_gear(machine, teeth)
+        per_count = steps_per_count(machine, teeth)
         if motion(machine, per_count, fastest).catch_up_s is not None:
             rate = _overtaking(machine, per_count, fastest)[0]
             return f" (A hob of {fastest:g} rpm alone: {teeth} teeth, which reach {rate:.0f} steps/s.)"
     return ""
-
-
-def _of_a_gear(machine: HobbingMachine, teeth: int) -> Fraction:
-    """Motor steps per encoder count."""
-    return Fraction(machine.motor_steps * machine.hob_starts, teeth) / machine.encoder_counts
 
 
 def _overtaking(machine: HobbingMachine, per_count: Fraction, rpm: float) -> tuple[float, float, float]:

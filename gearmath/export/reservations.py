@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from fractions import Fraction
 
+from gearmath.gearbox.helix import hob_ratio
 from gearmath.gearbox.job import TRIP
 from gearmath.gearbox.motion import motion
 from gearmath.specs.hobbing import HobbingMachine
@@ -49,6 +50,16 @@ def fewest_teeth(machine: HobbingMachine) -> int:
     return max(1, math.ceil(at_one / machine.max_step_rate))
 
 
+def steps_per_count(machine: HobbingMachine, teeth: int) -> Fraction:
+    """Motor steps per encoder count of a gear, whatever the hand of the hob."""
+    return abs(hob_ratio(machine, teeth, machine.hob_starts))
+
+
+def small_rpm(machine: HobbingMachine) -> int:
+    """The highest limits.hob_rpm with which the firmware takes a gear of SMALL teeth."""
+    return math.floor(machine.max_step_rate * SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
+
+
 def trial_teeth(machine: HobbingMachine) -> int:
     """Teeth of the first gear, a multiple of four that the firmware takes."""
     return max(TRIAL_TEETH, 4 * math.ceil(fewest_teeth(machine) / 4))
@@ -59,10 +70,10 @@ def _jobs(machine: HobbingMachine) -> list[str]:
     limits, fewest = machine.limits, fewest_teeth(machine)
     found = []
     if fewest > SMALL:
-        rpm = math.floor(machine.max_step_rate * SMALL * 60 / (machine.motor_steps * machine.hob_starts * TRIP))
         found.append(
             f"Gears of fewer than {fewest} teeth are refused: at {limits.hob_rpm:g} rpm they need more than "
-            f"{machine.max_step_rate} steps/s. For {SMALL} teeth write `hob_rpm = {rpm}` and export again."
+            f"{machine.max_step_rate} steps/s. For {SMALL} teeth write `hob_rpm = {small_rpm(machine)}` and export "
+            "again."
         )
     if limits.run_up_s is not None:
         followed = next((z for z in range(fewest, _MOST_TEETH + 1) if _follows(machine, z)), None)
@@ -77,6 +88,5 @@ def _jobs(machine: HobbingMachine) -> list[str]:
 
 def _follows(machine: HobbingMachine, teeth: int) -> bool:
     """Whether the table follows the hob in the time of the machine file."""
-    per_count = Fraction(machine.motor_steps * machine.hob_starts, teeth) / machine.encoder_counts
-    shortest = motion(machine, per_count, float(machine.limits.hob_rpm)).shortest_run_up_s
+    shortest = motion(machine, steps_per_count(machine, teeth), float(machine.limits.hob_rpm)).shortest_run_up_s
     return machine.limits.run_up_s is None or machine.limits.run_up_s >= shortest

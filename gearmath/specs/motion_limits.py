@@ -90,8 +90,8 @@ def _check_work(machine: HobbingMachine) -> None:
 
 def _check_ramps(machine: HobbingMachine) -> None:
     acceleration = machine.limits.acceleration_hz_per_s
-    turn = 2.0 * math.pi / float(machine.drive.pulses_per_turn)  # rad per step
-    if acceleration * turn > QUICKEST:
+    if acceleration > most_acceleration(machine):
+        turn = 2.0 * math.pi / float(machine.drive.pulses_per_turn)  # rad per step
         raise ValueError(
             f"limits.acceleration_hz_per_s = {acceleration:g}: is {acceleration * turn:.0f} rad/s2 of the motor, and "
             f"no rotor, even bare, does more than {QUICKEST:.0f}; write at most {most_acceleration(machine)}"

@@ -248,6 +248,18 @@ def test_full_rate_of_the_motor_is_reached_by_engaging_at_speed() -> None:
     assert "0.36 degrees of the table, 0.31 mm at a radius of 50 mm" in text
 
 
+def test_full_rate_is_the_same_with_a_left_hand_hob() -> None:
+    right = machine("hobbing_default")
+    left = right.model_copy(update={"hob_hand": "left"})
+    one, other = (
+        re.search(
+            r"The motor at its full rate.*?repeat as its README says", chapter(guide(each, "gearbox"), "Commissioning")
+        )[0]
+        for each in (right, left)
+    )
+    assert one == other
+
+
 def test_fewest_teeth_are_those_that_the_firmware_takes() -> None:
     """20000/1.01 steps/s at 800 rpm: 10.8 teeth; 6 teeth up to 445 rpm."""
     given = machine("hobbing_default")
