@@ -43,7 +43,6 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
     zero = run.reference or 0.0
     rows = run.path(step)
     followed = run.followed(np.array([row.rotation for row in rows]))
-    spread = None if run.gaps else run.leads.peak_to_peak
     return {
         "outcome": run.outcome,
         "leading_kinds": list(run.leads.kinds),
@@ -70,9 +69,15 @@ def figures(run: Mesh, step: float) -> dict[str, Any]:
             for row, ahead in zip(rows, followed, strict=True)
         ],
         "pattern": pattern(run).figures,
-        "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
+        "peak_to_peak_arcsec": peak_to_peak_arcsec(run),
         "v_h_mm": v_h(run),
     }
+
+
+def peak_to_peak_arcsec(run: Mesh) -> float | None:
+    """Transmission error of a pair from peak to peak; None where the contact, or the path of it, is not whole."""
+    spread = None if run.gaps else run.leads.peak_to_peak
+    return None if spread is None else spread * ARCSEC
 
 
 def on_fillets(run: Mesh) -> list[str]:
@@ -93,8 +98,7 @@ def shown_runs(runs: Mapping[str, Mesh]) -> list[Shows]:
     """What matters most of the sides of a pair, where its record is shown."""
     shown: list[Shows] = []
     for side, run in runs.items():
-        spread = run.leads.peak_to_peak
-        shown.append((f"{side}: transmission error", None if spread is None else spread * ARCSEC, "arcsec"))
+        shown.append((f"{side}: transmission error", peak_to_peak_arcsec(run), "arcsec"))
     shown += [(f"{side}: contact ratio", run.contact_ratio, "") for side, run in runs.items()]
     return [*shown, *((f"{side}: outcome", run.outcome, "") for side, run in runs.items())]
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearmath.bevel.contact.local import LocalContact, local
 from gearmath.bevel.contact.mesh import Mesh
-from gearmath.bevel.contact.report import ARCSEC, side_mesh
+from gearmath.bevel.contact.report import ARCSEC, peak_to_peak_arcsec, side_mesh
 from gearmath.bevel.contact.system import Assembly, TouchPoint
 from gearmath.bevel.contact.thread import Thread, zero
 from gearmath.bevel.design.crownings import crownings, miss
@@ -201,14 +201,13 @@ def _side(made: Designed, side: str, run: Mesh, stepped: bool) -> dict[str, Any]
             f"{side}: {request}: the second derivative at the vertex is "
             f"{second / wanted:.1%} of the one that belongs to it, which must be within {PARABOLA:.0%}"
         )
-    spread = run.leads.peak_to_peak
     lag = [None if math.isnan(one) else one * ARCSEC for one in found.lag]
     crowning, rms = crownings(made.pair, flank.name, flank.request, asked), 1000 * flank.fitted.rms
     return {
         "outcome": run.outcome,
         "remarks": [one for one in (miss(rms, crowning), _parabola_off(second, wanted)) if one],
         "contact_ratio": run.contact_ratio,
-        "peak_to_peak_arcsec": None if spread is None else spread * ARCSEC,
+        "peak_to_peak_arcsec": peak_to_peak_arcsec(run),
         "second_derivative": {"asked": wanted, "found": second},
         "lag_half_a_pitch_from_vertex_arcsec": lag,
         "vertex": {
