@@ -5,7 +5,6 @@ Each is the file without the slip, and what to say of it.
 
 from __future__ import annotations
 
-import copy
 import itertools
 from collections.abc import Iterator
 from typing import Any
@@ -29,10 +28,12 @@ Slip = tuple[str, Values]
 
 
 def changed(values: Values, *changes: tuple[tuple[str, ...], object]) -> Values:
-    new = copy.deepcopy(values)
+    """The values with some of them changed; tables without a change are those of the original."""
+    new = dict(values)
     for place, value in changes:
         table = new
         for part in place[:-1]:
+            table[part] = dict(table[part])
             table = table[part]
         table[place[-1]] = value
     return new

@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass
+from functools import cache
 from typing import Annotated, Any, Self, get_args
 
 from pydantic import ValidationError
@@ -169,6 +170,7 @@ def refusal_of(model: type[Spec], key: tuple[int | str, ...], value: Any, words:
     return ValidationError.from_exception_data(model.__name__, [InitErrorDetails(**fault)])  # type: ignore[typeddict-item]
 
 
+@cache  # a refused set is tried with hundreds of slips, each with some hundred keys
 def unit_of(model: type[Spec], key: str) -> str | None:
     """mm or degree, where a key of a model is a length or an angle, or several."""
     field = model.model_fields.get(key)
@@ -182,6 +184,7 @@ def _marks(annotation: Any) -> Iterator[Any]:
         yield from _marks(part)
 
 
+@cache
 def _inner(model: type[Spec], key: str) -> type[Sheet] | None:
     """The model of a table within a table."""
     field = model.model_fields.get(key)
