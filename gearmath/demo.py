@@ -153,7 +153,7 @@ def run_gearbox() -> tuple[list[tuple[int, float, int]], GearboxPlan, Simulation
 def compare_truths() -> tuple[float, int, int]:
     """Largest difference of CasADi to SymPy [mm], and of how many numbers the C is bit-equal to CasADi."""
     member = load_pair(bundled(GEAR_SET)).member("pinion")
-    points = solve_flank(member, "pinion", "concave", blank_grid(member))
+    points = solve_flank(member, "concave", blank_grid(member))
     settings, side = member.concave.vector, SIDES["concave"]
     arguments = (*points.contact.T, settings, side)
     lowered = np.hstack(kernel("flank_family")(*arguments))

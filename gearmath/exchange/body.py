@@ -26,7 +26,7 @@ def member_patches(member: Member, name: str) -> list[Patch]:
 
     Raises InputError naming member, flank and place where the cutter makes no tooth.
     """
-    space = tooth_space(member, name, COLUMNS, tuple(ROWS.items()))
+    space = tooth_space(member, COLUMNS, tuple(ROWS.items()))
     grids = space_grids(space)
     patches = []
     for tooth in range(member.teeth):

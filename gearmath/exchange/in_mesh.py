@@ -70,7 +70,7 @@ def pair_triangles(pair: BevelSet, side: str = "drive") -> np.ndarray:
     members = {name: pair.member(name) for name in MEMBERS}
     return np.concatenate(
         [
-            pose.of(member_triangles(members[name], tooth_space(members[name], name)))
+            pose.of(member_triangles(members[name], tooth_space(members[name])))
             for name, pose in poses(pair, side).items()
         ]
     )

@@ -249,11 +249,11 @@ def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurem
     from gearmath.specs.flank_csv import flank_file
 
     places = blank_grid(member.spec, *grid, margin)
-    header = flank_header(member.spec, member.name, grid, margin)
+    header = flank_header(member.spec, grid, margin)
     row, col = (index.ravel() for index in np.indices(grid))
     files = []
     for flank in FLANKS:
-        nominal = solve_flank(member.spec, member.name, flank, places)
+        nominal = solve_flank(member.spec, flank, places)
         target = target_of(member.spec, flank, nominal)
         deviation, _ = predicted(target, target.vector)
         point = nominal.point + deviation[:, None] * nominal.normal

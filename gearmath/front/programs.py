@@ -209,7 +209,7 @@ class Program(Shown):
     def space(self) -> ToothSpace | None:
         """The tooth space of the member, None in face hobbing, of which flanks alone are judged."""
         member = self.member
-        return None if member.spec.process == "face_hobbing" else tooth_space(member.spec, member.name, _COLUMNS)
+        return None if member.spec.process == "face_hobbing" else tooth_space(member.spec, _COLUMNS)
 
     @cached_property
     def runs(self) -> list[CuttingRun]:

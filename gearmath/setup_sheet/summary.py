@@ -79,7 +79,7 @@ def summary_sheet(pair: BevelSet) -> str:
             f"Transverse backlash of the pair at the mean point: {backlash:.3f} mm, {backlash / _INCH:.4f} in."
         )
     for k, (name, member) in enumerate(pair.members.items()):
-        space = tooth_space(member, name)
+        space = tooth_space(member)
         page.heading(name.capitalize(), new_sheet=k > 0)
         method = (member.process, member.generation, member.cutting)
         page.head(

@@ -103,7 +103,7 @@ def metal_faults(
         left = mill_member(path, made, name, machine, None, progress, runs) if known is None else known
         borders = np.zeros(0) if stated.stock else left_at_borders(runs, made, machine)
         return hobbed(left.deviation, borders, stated, control_share(made, name, machine).rounding)
-    own = space if made == member else tooth_space(made, name, 7)
+    own = space if made == member else tooth_space(made, 7)
     return metal_left(runs, made, name, machine, stated, own, progress)
 
 
@@ -120,7 +120,7 @@ def written_faults(
     ``progress`` is called for every space or flank. Raises InputError where the text cuts with a tool that is not of
     the member.
     """
-    space = None if member.process == "face_hobbing" else tooth_space(member, name, 7)
+    space = None if member.process == "face_hobbing" else tooth_space(member, 7)
     runs = runs_of(path, member, name, machine, None, space, SHARP_EDGE)
     found = faults_of(text, path, runs, member, name, machine)
     if Stated.of(text).coolant:

@@ -86,14 +86,14 @@ def milling_report(
     twice for corrected settings; ``space`` is the nominal space where it is known. Raises InputError if a tool is not
     of this member.
     """
-    space = space or tooth_space(member, name, columns)
+    space = space or tooth_space(member, columns)
     runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
     on_flanks = tolerance if flank_tolerance is None else flank_tolerance
     judged = (None, tolerance, columns, runs, progress)
     states = surface_states(path, member, name, machine, errors, *judged, space, on_flanks)
     made, own = as_cut(member, space), []
     if made != member and errors is None:
-        other = tooth_space(made, name, columns)
+        other = tooth_space(made, columns)
         own = surface_states(path, made, name, machine, None, *judged, other, on_flanks)
     met = collisions(path, runs, member, machine, *obstacles(machine, errors))
     return MillingReport(name, tolerance, on_flanks, tuple(states), tuple(own), tuple(met), timing(path, machine))

@@ -61,7 +61,7 @@ def _in_order(file: FlankFile, member: Member) -> FlankFile:
 def _work_axis(file: FlankFile, member: Member, name: str) -> np.ndarray:
     """Positions (n,) [rad] of the work axis at which the points are touched, each with its space on top."""
     grid = file_grid(file, member)
-    points = {flank: solve_flank(member, name, flank, grid).point for flank in FLANKS}
+    points = {flank: solve_flank(member, flank, grid).point for flank in FLANKS}
     angle = {flank: kernel("space_azimuth")(points[flank], points[other])[0] for flank, other in (FLANKS, FLANKS[::-1])}
     place = file.row * grid.shape[1] + file.col
     at = np.array([angle[flank][k] for flank, k in zip(file.flank, place, strict=True)])

@@ -39,7 +39,7 @@ def metal(
     """
     runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
-    nominal = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
+    nominal = {flank: nominal_flank(member, flank, grid) for flank in FLANKS}
     row, col = (index.ravel() for index in np.indices(grid.shape))
     reference, corners = (landmarks(row, col, grid.shape, corners=more) for more in (False, True))
     files = []

@@ -46,7 +46,7 @@ def mill_member(
     """
     runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
-    nominals = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
+    nominals = {flank: nominal_flank(member, flank, grid) for flank in FLANKS}
     files = []
     for run in runs:
         for flank in run.cut.flanks:
@@ -79,7 +79,7 @@ def root_of(member: Member, name: str) -> ToothSpace | None:
     """The space whose root a fixed-setting cutter has to fit in; a completing one is what its blades are."""
     if member.cutting == "completing":
         return None
-    return tooth_space(member, name, 7)
+    return tooth_space(member, 7)
 
 
 def _together(spaces: list[int]) -> list[list[int]]:

@@ -92,7 +92,7 @@ class MilledSurface:
     def _rate(self, flank: str) -> np.ndarray:
         """How fast the grid (rows, columns) of a flank rises along its normals as the tooth is turned [mm/rad]."""
         if flank not in self._rates:
-            points = solve_flank(self._member, self._member_name, flank, self._grid)
+            points = solve_flank(self._member, flank, self._grid)
             (rates,) = kernel("motion_sensitivity")(points.point, points.normal)
             self._rates[flank] = rates[:, _TURN].reshape(self._shape)
         return self._rates[flank]

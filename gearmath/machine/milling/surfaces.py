@@ -109,7 +109,7 @@ def surface_states(
     ``runs`` replaces the tools of the program, whose ``path`` is then not needed; ``space`` the nominal space.
     ``progress`` is called with the number of surfaces done. Raises InputError if a tool is not of this member.
     """
-    space = space or tooth_space(member, name, columns)
+    space = space or tooth_space(member, columns)
     *surfaces, root = nominal_surfaces(member, space)
     surfaces.append(generated_root(root, member, name, space))
     if runs is None:

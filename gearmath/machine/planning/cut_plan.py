@@ -182,7 +182,7 @@ def tolerance_limits(member: Member) -> tuple[float, float]:
 
 def _space(member: Member, name: str) -> ToothSpace | None:
     """The tooth space that tells how wide the cutters of single flanks are."""
-    return None if member.cutting == "completing" else tooth_space(member, name, 7)
+    return None if member.cutting == "completing" else tooth_space(member, 7)
 
 
 def pass_count(member: Member, name: str, job: CuttingJob) -> int:

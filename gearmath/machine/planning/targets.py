@@ -101,7 +101,7 @@ def targets_of_space(
     Raises InputError naming flank, row and column where the tip has no room between the flanks.
     """
     (other,) = (each for each in FLANKS if each != flank)
-    points, opposite = (solve_flank(member, name, each, grid) for each in (flank, other))
+    points, opposite = (solve_flank(member, each, grid) for each in (flank, other))
     row, col = (index.ravel() for index in np.indices(grid.shape))
     r = calibration.tip_radius
     (touch,) = kernel("probe_target")(points.point, points.normal, r, 0.0)

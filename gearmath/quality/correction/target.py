@@ -56,7 +56,7 @@ def flank_target(
     order = np.argsort(place)
     order = order[kept[order]]
     at = place[order]
-    nominal = solve_flank(member, name, flank, file_grid(measured, member, flank, tooth))
+    nominal = solve_flank(member, flank, file_grid(measured, member, flank, tooth))
     deviation = points.deviation[order]
     _check_places(flank, points.point[order], deviation, nominal, at, int(points.tooth[0]) / member.teeth, columns)
     used = np.zeros(rows * columns, dtype=bool)

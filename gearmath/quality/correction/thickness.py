@@ -68,7 +68,7 @@ def _reference(member: Member, name: str, flank: str) -> FlankTarget:
     """The middle of a flank as a target of one point."""
     grid = blank_grid(member, 3, 3)
     middle = Grid(grid.axial[1:2, 1:2], grid.radial[1:2, 1:2])
-    return replace(target_of(member, flank, solve_flank(member, name, flank, middle)), root=None)
+    return replace(target_of(member, flank, solve_flank(member, flank, middle)), root=None)
 
 
 def _vector(target: FlankTarget, settings: np.ndarray) -> np.ndarray:

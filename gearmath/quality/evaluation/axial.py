@@ -114,7 +114,7 @@ def _by_settings(
 ) -> float | None:
     """How much of an axial shift the other settings imitate; each flank has its own where it has its own pass."""
     try:
-        require_plain(member, name, "the sensitivity to settings")
+        require_plain(member, "the sensitivity to settings")
     except InputError:
         return None
     blocks = []
@@ -129,7 +129,7 @@ def _by_settings(
             return None
         (rates,) = kernel("setting_sensitivity")(*found.contact.T, settings, SIDES[flank])
         block = np.zeros((len(here), len(_OTHERS)))
-        block[here] = rates[of.ravel()][:, [SETTINGS.index(name) for name in _OTHERS]]
+        block[here] = rates[of.ravel()][:, [SETTINGS.index(other) for other in _OTHERS]]
         blocks.append(block)
     shared = member.cutting == "completing"
     return _share(blocks[0] + blocks[1] if shared else np.hstack(blocks), axial)

@@ -51,7 +51,7 @@ def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
             else:
                 grid = file_grid(file, member, flank)
                 place = file.row[here] * columns + file.col[here]
-            solved = solve_flank(member, name, flank, grid)
+            solved = solve_flank(member, flank, grid)
             point[here] = turned(solved.point[place], turn[here])
             normal[here] = turned(solved.normal[place], turn[here])
     return NominalRows(point, normal, turn, tooth)
@@ -112,7 +112,7 @@ def at_one_place(file: FlankFile, member: Member, name: str) -> FlankFile:
     for flank in np.unique(points.flank):
         here = points.flank == flank
         turn = 2 * math.pi * (points.tooth[here] % member.teeth) / member.teeth
-        solved = solve_flank(member, name, str(flank), Grid(np.array([[axial]]), np.array([[radial]])))
+        solved = solve_flank(member, str(flank), Grid(np.array([[axial]]), np.array([[radial]])))
         point[here] = turned(np.repeat(solved.point, len(turn), axis=0), turn)
         normal[here] = turned(np.repeat(solved.normal, len(turn), axis=0), turn)
     moved = np.nan_to_num(points.deviation)[:, None] * normal

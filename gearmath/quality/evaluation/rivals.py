@@ -55,7 +55,7 @@ def rival_columns(file: FlankFile, member: Member, name: str) -> Iterator[tuple[
 def _rates(file: FlankFile, member: Member, name: str, flank: str, tooth: int) -> np.ndarray:
     """Derivatives (grid,12) of the deviations on the grid of a tooth by the settings."""
     spec = member.flank(flank)
-    nominal = by_foot(spec, solve_flank(member, name, flank, file_grid(file, member, flank, tooth)))
+    nominal = by_foot(spec, solve_flank(member, flank, file_grid(file, member, flank, tooth)))
     none = np.zeros(len(nominal.point))
     how, blade = generation_of(member, flank), (nominal_curvature(spec), spec.blade_reference_height)
     target = FlankTarget(how, nominal, none, *blade)

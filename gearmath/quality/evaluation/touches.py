@@ -48,7 +48,7 @@ def measured_member(
     contact, deviation = kernel("touched_point")(tip, radius, point, normal)
     met = touches.triggered
     _check_place((contact - point)[met], touches.pick(met))
-    header = {**flank_header(member, name, grid.shape), "tip_radius_mm": f"{calibration.tip_radius:g}"}
+    header = {**flank_header(member, grid.shape), "tip_radius_mm": f"{calibration.tip_radius:g}"}
     contact, deviation = np.where(met[:, None], contact, point), np.where(met, deviation, np.nan)
     return _averaged(header, touches, contact, normal, deviation)
 
@@ -74,7 +74,7 @@ def _nominal(touches: Touches, member: Member, name: str, grid: Grid) -> tuple[n
     place = touches.row * grid.shape[1] + touches.col
     for flank in (flank for flank in FLANKS if (touches.flank == flank).any()):
         here = touches.flank == flank
-        nominal = solve_flank(member, name, flank, grid)
+        nominal = solve_flank(member, flank, grid)
         point[here], normal[here] = nominal.point[place[here]], nominal.normal[place[here]]
     return turned(point, turn), turned(normal, turn)
 

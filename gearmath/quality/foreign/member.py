@@ -270,7 +270,7 @@ def _on_grid(
             f"{one.part.name}: its {len(across)} points form no grid, and cover too little of the {one.part.flank} "
             f"flank for one of {_ROWS}x{_COLUMNS} between them"
         )
-    nominal = solve_flank(member, name, one.part.flank, blank_grid(member, _ROWS, _COLUMNS, margin))
+    nominal = solve_flank(member, one.part.flank, blank_grid(member, _ROWS, _COLUMNS, margin))
     deviation = np.array([_smooth(across[~off], up[~off], one.deviation[~off], each) for each in place])
     row, col = (each.ravel() for each in np.indices((_ROWS, _COLUMNS)))
     words = f"{len(across)} points form no grid that all share: deviations on {_ROWS}x{_COLUMNS}, margins {margin:g}"
@@ -280,7 +280,7 @@ def _on_grid(
 
 def _header(member: Member, name: str, files: Sequence[FlankFile], frame: Frame, zeroed: bool) -> dict[str, str]:
     rows, columns = (int(max(getattr(file, index).max() for file in files)) + 1 for index in ("row", "col"))
-    return flank_header(member, name, (rows, columns)) | {
+    return flank_header(member, (rows, columns)) | {
         "margins": _margins(member, name, files, rows, columns),
         "phase_zeroed": "true" if zeroed else "false",
         "tip_radius_mm": f"{frame.tip_radius:g}",
@@ -299,7 +299,7 @@ def _margins(member: Member, name: str, files: Sequence[FlankFile], rows: int, c
             margin = round(float((across.min() + 1 - across.max()) / 2), _DIGITS)
         if not 0 <= margin < 0.5:
             return OWN
-        nominal = solve_flank(member, name, str(file.flank[0]), blank_grid(member, rows, columns, margin))
+        nominal = solve_flank(member, str(file.flank[0]), blank_grid(member, rows, columns, margin))
         apart = np.linalg.norm(nominal.point[file.row * columns + file.col] - foot, axis=1)
         if apart.max() > _EVEN:
             return OWN

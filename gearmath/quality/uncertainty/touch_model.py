@@ -43,7 +43,7 @@ def sensitivities(
     The same for every tooth: the work turns, and the axes but A stand where they stood. Squareness acts from the height
     at which the tip was calibrated, whose offset in X is that of this height.
     """
-    points, opposite = (solve_flank(member, name, each, grid) for each in (flank, _other(flank)))
+    points, opposite = (solve_flank(member, each, grid) for each in (flank, _other(flank)))
     (tip,) = kernel("probe_target")(points.point, points.normal, calibration.tip_radius, 0.0)
     (A,) = kernel("space_azimuth")(points.point, opposite.point)
     axes = tip_positions(tip, A, member.blank.delta_f, machine, calibration)

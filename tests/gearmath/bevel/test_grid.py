@@ -20,7 +20,7 @@ SIDES = Margins(root=0.05, tip=0.2, toe=0.15, heel=0.3)
 
 def measured(member, grid, margins, deviation=0.02):
     """A file of the gear's concave flank whose every point is ``deviation`` [mm] out of the metal."""
-    file = nominal_flank(member, "gear", "concave", grid, margins)
+    file = nominal_flank(member, "concave", grid, margins)
     out = np.full(len(file), deviation)
     return type(file)(
         file.header,

@@ -27,7 +27,7 @@ STEEP = "spiral_7x43.toml"
 
 def left_by(member, name, flank, **errors):
     """Deviations of a flank whose machine is off by ``errors``, by names of settings and motions (dots as __)."""
-    target = target_of(member, flank, solve_flank(member, name, flank, blank_grid(member)))
+    target = target_of(member, flank, solve_flank(member, flank, blank_grid(member)))
     change = np.zeros(83)
     for key, value in errors.items():
         change[NAMES.index(key.replace("__", "."))] = value
@@ -47,7 +47,7 @@ def measured(tmp_path):
             if extra is not None:
                 deviation = deviation + extra(row, col)
             point = target.nominal.point + deviation[:, None] * target.nominal.normal
-            header = flank_header(member, name, (5, 9))
+            header = flank_header(member, (5, 9))
             files.append(flank_file(header, name, flank, 0, row, col, point, target.nominal.normal, deviation))
         path = tmp_path / f"{name}.csv"
         write_flank_csv(path, join(files))

@@ -19,7 +19,7 @@ SET = "nasa_tp3096_12x36.toml"
 
 
 def measured(gear_set, flank="concave", tooth=0):
-    file = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion), tooth=tooth)
+    file = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion), tooth=tooth)
     return replace(file, deviation=np.zeros(len(file)))
 
 

@@ -31,7 +31,7 @@ def written(path, gear_set, seat=SEAT, flanks=FLANKS, member="pinion"):
     """A member, tooth 0 measured in full, the others at middle and corners, with noise of 0.2 µm."""
     spec = gear_set.member(member)
     grid = blank_grid(spec)
-    whole = join([nominal_flank(spec, member, flank, grid, tooth=k) for k in range(spec.teeth) for flank in flanks])
+    whole = join([nominal_flank(spec, flank, grid, tooth=k) for k in range(spec.teeth) for flank in flanks])
     corner = np.isin(whole.row, (0, 4)) & np.isin(whole.col, (0, 8))
     whole = whole.pick((whole.tooth == 0) | corner | ((whole.row == 2) & (whole.col == 4)))
     noise = 2e-4 * np.random.default_rng(3).standard_normal(len(whole))
@@ -161,7 +161,7 @@ def test_every_point_of_both_flanks_has_its_deviation_with_the_reference_point_a
         ]
         values = np.array([number(text) for text in texts]).reshape(5, 9)
         assert values[2, 4] == 0
-        nominal = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion))
+        nominal = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion))
         turning = np.sum(np.cross([0, 0, 1], nominal.point) * nominal.normal, axis=1).reshape(5, 9)
         put_in = np.broadcast_to(4.0 + 3.0 * (np.arange(9) - 4) / 8, (5, 9))
         wanted = put_in - 4.0 * turning / turning[2, 4]

@@ -87,7 +87,7 @@ def test_program_of_a_tenth_of_a_micrometre_keeps_it_from_tip_to_root(
         assert state.highest <= limit, state
         assert (state.gouged, state.uncut) == (0, 0), state
     assert len(states) == 5
-    runs = runs_of(path, spec, name, vertical, None, tooth_space(spec, name, 5))
+    runs = runs_of(path, spec, name, vertical, None, tooth_space(spec, 5))
     assert collisions(path, runs, spec, vertical) == []
 
 
@@ -112,7 +112,7 @@ def test_program_for_toprem_blades_leaves_what_their_exact_motion_leaves(
 ) -> None:
     """Where Toprem and main blade join, each cuts some micrometres off the other's surface: so does the program."""
     bevel_set = with_toprem(load_bevel_set(bundled("nasa_tp3096_12x36.toml")))
-    spec, space = bevel_set.gear, tooth_space(bevel_set.gear, "gear", 9)
+    spec, space = bevel_set.gear, tooth_space(bevel_set.gear, 9)
     path = execute(cutting_program(bevel_set, "gear", vertical, "TOPREM", CuttingJob(range(3))), "TOPREM.MPF")
     runs = runs_of(path, spec, "gear", vertical, None, space, SHARP_EDGE)
     for surface in nominal_surfaces(spec, space):

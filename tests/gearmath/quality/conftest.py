@@ -173,8 +173,8 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
     ) -> FlankFile:
         grid_ = blank_grid(member, *grid)
         row, col = (each.ravel() for each in np.indices(grid))
-        header, files = flank_header(member, name, grid_.shape), []
-        nominals = {flank: solve_flank(member, name, flank, grid_) for flank in FLANKS}
+        header, files = flank_header(member, grid_.shape), []
+        nominals = {flank: solve_flank(member, flank, grid_) for flank in FLANKS}
         kept = [np.arange(len(row)) if places is None or i in whole else np.array(places) for i in teeth]
         keep, tooth = np.concatenate(kept), np.repeat(list(teeth), [len(each) for each in kept])
         found = {}

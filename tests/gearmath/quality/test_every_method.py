@@ -45,7 +45,7 @@ def member_of(set_name, name, arc=False):
 
 def targets_of(member, name, flanks=FLANKS, rows=5, columns=9):
     grid = blank_grid(member, rows, columns)
-    return [replace(target_of(member, flank, solve_flank(member, name, flank, grid)), root=None) for flank in flanks]
+    return [replace(target_of(member, flank, solve_flank(member, flank, grid)), root=None) for flank in flanks]
 
 
 def groups_of(member):

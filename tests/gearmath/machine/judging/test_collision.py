@@ -27,7 +27,7 @@ def job(gear_set, program, vertical):
 def test_bundled_programs_collide_with_nothing(gear_set, program, vertical, member):
     path = program(gear_set, member, (0, 3))
     spec = gear_set.member(member)
-    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 5))
+    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, 5))
     assert collisions(path, runs, gear_set.member(member), vertical) == []
 
 

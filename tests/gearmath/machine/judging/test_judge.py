@@ -30,7 +30,7 @@ def text(gear_set, vertical):
 
 @pytest.fixture(scope="module")
 def space(gear_set):
-    return tooth_space(gear_set.gear, "gear", 7)
+    return tooth_space(gear_set.gear, 7)
 
 
 @pytest.fixture
@@ -242,7 +242,7 @@ def test_program_with_index_corrections_is_judged_by_the_places_that_they_ask_fo
     wanted = tuple(0.004 * (k % 3 - 1) for k in range(gear_set.gear.teeth))  # up to 0.004 degrees, about 9 um
     spec = gear_set.gear.model_copy(update={"index_correction": wanted})
     corrected = gear_set.model_copy(update={"gear": spec})
-    space = tooth_space(spec, "gear", 7)
+    space = tooth_space(spec, 7)
 
     def left(text):
         runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
@@ -325,7 +325,7 @@ def crawl(vertical):
 
     def judge(text, spec, name):
         path = execute(text, "CUT", Setup.of(vertical))
-        space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)
+        space = None if spec.process == "face_hobbing" else tooth_space(spec, 7)
         return crawling(path, runs_of(path, spec, name, vertical, None, space), spec, vertical, Stated.of(text))
 
     return judge

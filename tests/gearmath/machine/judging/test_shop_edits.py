@@ -33,7 +33,7 @@ def programs():
             text = linuxcnc_program(cutting_plan(bevel_set, "gear", MACHINE, job), "CUT")
         else:
             text = cutting_program(bevel_set, "gear", MACHINE, "CUT", job)
-        found[key] = text, bevel_set.gear, tooth_space(bevel_set.gear, "gear", 7)
+        found[key] = text, bevel_set.gear, tooth_space(bevel_set.gear, 7)
     return found
 
 

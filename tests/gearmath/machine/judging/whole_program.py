@@ -115,7 +115,7 @@ class Whole:
         self.spec = bevel_set.member(self.member)
         self.text = self.written(bevel_set, CuttingJob(self.spaces or range(self.spec.teeth)))
         self.lines = self.text.split("\n")
-        self.space = tooth_space(self.spec, self.member, 7)
+        self.space = tooth_space(self.spec, 7)
         self.stated = Stated.of(self.text)
         self.path = execute(self.text, "CUT", Setup.of(MACHINE))
         self._run_right()

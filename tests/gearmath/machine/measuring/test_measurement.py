@@ -21,7 +21,7 @@ def true_file(gear_set, name, deviation=0.0):
     grid, files = blank_grid(member), []
     for flank in FLANKS:
         for tooth in range(member.teeth):
-            one = nominal_flank(member, name, flank, grid, tooth=tooth)
+            one = nominal_flank(member, flank, grid, tooth=tooth)
             keep = np.full(len(one), tooth == 0) | ((one.row == 2) & (one.col == 4))
             point, normal, n = one.point[keep], one.normal[keep], int(keep.sum())
             files.append(

@@ -50,7 +50,7 @@ def nominal(gear_set, places):
     grid, files = blank_grid(gear_set.pinion), []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=tooth)
+            one = nominal_flank(gear_set.pinion, flank, grid, tooth=tooth)
             here = places.select(flank, tooth)
             keep = here.row * 9 + here.col
             files.append(

@@ -106,7 +106,7 @@ def test_clamping_and_drift_of_a_run_are_those_of_the_simulated_measurement(gear
     files = []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(member, "pinion", flank, blank_grid(member), tooth=tooth)
+            one = nominal_flank(member, flank, blank_grid(member), tooth=tooth)
             one = one.pick((tooth == 0) | ((one.row == 2) & (one.col == 4)))
             one.deviation[:] = 0.0
             files.append(one)

@@ -71,7 +71,7 @@ def test_cutter_ten_micrometres_too_large_shifts_the_whole_cone_along_its_normal
     file = mill_member(path, larger.member(member), member, vertical).select(flank)
     by_hand = -SIDES[flank] * 0.01 * math.cos(math.radians(spec.blade_pressure_angle))
     np.testing.assert_allclose(file.deviation, by_hand, rtol=0, atol=1.5e-4)  # straight blocks 1e-4, second order
-    nominal = solve_flank(gear_set.member(member), member, flank, blank_grid(gear_set.member(member)))
+    nominal = solve_flank(gear_set.member(member), flank, blank_grid(gear_set.member(member)))
     (sensitivity,) = kernel("setting_sensitivity")(*nominal.contact.T, spec.vector, SIDES[flank])
     predicted = 0.01 * sensitivity[:, SETTINGS.index("blade_point_radius")]
     np.testing.assert_allclose(file.deviation, predicted, rtol=0, atol=1.5e-4)

@@ -37,7 +37,7 @@ def form(flank, up, along):
 
 def of_form(member, flank, tooth, keep, shape=(5, 9)):
     """Points of one flank of one tooth: the form, and the turn of the space by its lever, written out here."""
-    one = nominal_flank(member, "pinion", flank, blank_grid(member, *shape), tooth=tooth)
+    one = nominal_flank(member, flank, blank_grid(member, *shape), tooth=tooth)
     lever = one.point[:, 0] * one.normal[:, 1] - one.point[:, 1] * one.normal[:, 0]
     up, along = 2 * one.row / (shape[0] - 1) - 1, 2 * one.col / (shape[1] - 1) - 1
     found = form(flank, up, along) + TURN[tooth] * lever

@@ -22,7 +22,7 @@ SURFACES = ("concave flank", "concave fillet", "convex flank", "convex fillet", 
 @pytest.fixture(scope="module")
 def gear_runs(gear_set, program, vertical):
     path = program(gear_set, "gear", (0, 1, 2))
-    space = tooth_space(gear_set.gear, "gear", 5)
+    space = tooth_space(gear_set.gear, 5)
     return path, runs_of(path, gear_set.gear, "gear", vertical, None, space, SHARP_EDGE)
 
 
@@ -59,7 +59,7 @@ def test_root_lies_on_the_root_cone_where_the_cutter_is_not_tilted(gear_set, hos
     """
     for name in MEMBERS:
         member = gear_set.member(name)
-        space = tooth_space(member, name, 5)
+        space = tooth_space(member, 5)
         *_, ruled = nominal_surfaces(member, space)
         ruled = replace(ruled, point=ruled.point + 0.05 * ruled.normal)
         root = generated_root(ruled, member, name, space)
@@ -119,7 +119,7 @@ def test_pass_far_off_its_space_cuts_into_the_neighbour(gear_runs, states):
 
 
 def test_surfaces_begin_their_lines_within_the_tooth(gear_set):
-    for surface in nominal_surfaces(gear_set.pinion, tooth_space(gear_set.pinion, "pinion", 5)):
+    for surface in nominal_surfaces(gear_set.pinion, tooth_space(gear_set.pinion, 5)):
         assert (surface.start < 0).all()
         assert (surface.start > -10).all()
         np.testing.assert_allclose(np.linalg.norm(surface.normal, axis=1), 1.0, atol=1e-9)

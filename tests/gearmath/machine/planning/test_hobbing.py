@@ -551,7 +551,7 @@ def test_index_errors_of_the_work_axis_become_pitch(cut, hobbed):
     table = index_errors(axis, 39, 1)
     for flank in FLANKS:
         middle = (low.row == 2) & (low.col == 4) & (low.flank == flank)
-        beta = solve_flank(hobbed.gear, "gear", flank, blank_grid(hobbed.gear)).contact[2 * 9 + 4, 1]
+        beta = solve_flank(hobbed.gear, flank, blank_grid(hobbed.gear)).contact[2 * 9 + 4, 1]
         pitches = (low.tooth[middle] - hobbed.gear.indexing_sign * 13 * beta / (2 * math.pi)) % 39
         error = np.interp(pitches, np.arange(40), np.append(table, table[0]))
         nominal = low.point[middle] - low.deviation[middle, None] * low.normal[middle]
@@ -617,7 +617,7 @@ def test_report_finds_no_fault_in_a_right_program_and_times_c(hobbed, written, v
     """Flanks down to their fillets within 0.1 µm, no gouge anywhere; a fillet of 0.02 mm keeps scallops of some µm."""
     path = execute(written(member, tolerance=1e-4), "HOB.MPF")
     spec = hobbed.member(member)
-    space = tooth_space(spec, member, 5)
+    space = tooth_space(spec, 5)
     states = surface_states(path, spec, member, vertical, spaces=(0, spec.teeth - 1), columns=5, space=space)
     assert len(states) == 10
     for state in states:
@@ -658,7 +658,7 @@ def test_toprem_takes_away_what_its_own_edge_sweeps(hobbed, written, vertical, h
     """A protuberance undercuts the flank above it; at the deepest place as the brute-force sweep of its edge says."""
     other = changed(hobbed, "gear", **both(hobbed.gear, toprem_angle=14.0, toprem_height=1.0))
     spec, path = other.gear.concave, execute(written("gear", gear_set=other), "HOB.MPF")
-    space = tooth_space(other.gear, "gear", 5)
+    space = tooth_space(other.gear, 5)
     flank = nominal_surfaces(other.gear, space)[0]
     (run,) = runs_of(path, other.gear, "gear", vertical, None, space, SHARP_EDGE)
     left = expose([run], vertical, None, flank.point, flank.normal, flank.start).distance
@@ -753,8 +753,8 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
     x, y = axis_positions(member.convex, border.contact[:, 2], vertical.pivot_height, vertical.pivot)[0, :2]
     text, changed_line = part_of_roll(written("gear", tolerance=1e-4), 30, x, y)
     path = execute("\n".join(text), "P")
-    parts: list = [solve_flank(member, "gear", flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
-    space = tooth_space(member, "gear", 21)
+    parts: list = [solve_flank(member, flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
+    space = tooth_space(member, 21)
     parts += [border_of(getattr(space, flank)) for flank in FLANKS]  # most is left there where a visit is missing
     angles = [2 * math.pi * space / 39 for space in range(39)]
     point, normal = (

@@ -78,7 +78,7 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
     rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[2:]]
     assert len(touched) == len(rows) == 2 * (45 + spec.teeth - 1 + 5)
     tips, _ = tip_in_work(touched, machine, probe)
-    nominal = {flank: solve_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS}
+    nominal = {flank: solve_flank(spec, flank, blank_grid(spec)) for flank in FLANKS}
     for tip, (_, _, _, flank, tooth, row, col, *_) in zip(tips, rows, strict=True):
         k = int(row) * 9 + int(col)
         turn = 2 * math.pi * int(tooth) / spec.teeth
@@ -127,7 +127,7 @@ def test_touch_is_square_to_the_flank_and_starts_outside_of_it(gear_set, member)
     first, _ = tip_in_work(targets.start, MACHINE, PROBE)
     last, _ = tip_in_work(targets.end, MACHINE, PROBE)
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        nominal = solve_flank(spec, flank, blank_grid(spec))
         here = (targets.flank == flank) & (targets.tooth == 0)
         way = last[here] - first[here]
         along = (way * nominal.normal).sum(axis=1)
@@ -139,7 +139,7 @@ def test_touch_is_square_to_the_flank_and_starts_outside_of_it(gear_set, member)
 
 def cloud(spec, member):
     """Points of the space, fine enough that a ball of tip size finds them, and the same of both neighbours' lands."""
-    space = tooth_space(spec, member, 97)
+    space = tooth_space(spec, 97)
     parts = [space.concave.point.reshape(-1, 3), space.convex.point.reshape(-1, 3)]
     low, high = space.ordered
     for share in np.linspace(0, 1, 25)[1:-1]:
@@ -187,7 +187,7 @@ def test_sideways_motion_is_above_the_whole_member(gear_set, member):
     spec = gear_set.member(member)
     done, _ = probed(gear_set, member)
     path = done.path
-    blank = solve_flank(spec, member, "concave", blank_grid(spec, 2, 2, 0.02)).point
+    blank = solve_flank(spec, "concave", blank_grid(spec, 2, 2, 0.02)).point
     reach = np.hypot(blank[:, 0], blank[:, 1]) * 1.02
     for k in range(1, len(path.axes)):
         moved = np.abs(path.axes[k] - path.axes[k - 1])

@@ -47,7 +47,7 @@ def test_program_touches_gives_back_nominal_and_collides_with_nothing(gear_set, 
     assert np.abs(measured.deviation).max() <= 1e-5  # mm
     targets = []
     for flank in FLANKS:
-        nominal = solve_flank(member, name, flank, blank_grid(member))
+        nominal = solve_flank(member, flank, blank_grid(member))
         for tooth in range(member.teeth):
             angle = 2 * np.pi * tooth / member.teeth
             c, s = np.cos(angle), np.sin(angle)

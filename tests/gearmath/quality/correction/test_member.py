@@ -190,7 +190,7 @@ def test_file_that_is_not_of_this_member_is_refused(gear_set, measured, change, 
 
 def test_nominal_file_of_both_flanks_is_refused(gear_set):
     grid = blank_grid(gear_set.pinion)
-    nominal = join([nominal_flank(gear_set.pinion, "pinion", flank, grid) for flank in FLANKS])
+    nominal = join([nominal_flank(gear_set.pinion, flank, grid) for flank in FLANKS])
     with pytest.raises(InputError, match="nominal file"):
         correct(gear_set.pinion, "pinion", nominal)
 

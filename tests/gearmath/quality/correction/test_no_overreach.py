@@ -37,7 +37,7 @@ def measured(name, errors, rotation=0.0, sigma=0.0, seed=0, extra=None, gear_set
     member, random, files = gear_set.member(name), np.random.default_rng(seed), []
     for flank in FLANKS:
         grid = blank_grid(member)
-        target = target_of(member, flank, solve_flank(member, name, flank, grid))
+        target = target_of(member, flank, solve_flank(member, flank, grid))
         vector = target.vector
         for key, value in errors.get(flank, {}).items():
             vector[NAMES.index(key)] += value
@@ -51,7 +51,7 @@ def measured(name, errors, rotation=0.0, sigma=0.0, seed=0, extra=None, gear_set
         at = target.nominal
         point = at.point + deviation[:, None] * at.normal
         files.append(
-            flank_file(flank_header(member, name, grid.shape), name, flank, 0, row, col, point, at.normal, deviation)
+            flank_file(flank_header(member, grid.shape), name, flank, 0, row, col, point, at.normal, deviation)
         )
     file = join(files)
     return replace(file, uncertainty=np.full(len(file), sigma or np.nan))

@@ -29,9 +29,9 @@ def pinion_with_one_tooth_indexed(gear_set, arcs, noise=0.0, others=True, radial
     The other teeth have their reference points where they belong. All flanks are off by ``radial`` [mm] besides.
     """
     member, files, random = gear_set.pinion, [], np.random.default_rng(0)
-    header = flank_header(member, "pinion", (5, 9))
+    header = flank_header(member, (5, 9))
     for flank in FLANKS:
-        at = solve_flank(member, "pinion", flank, blank_grid(member))
+        at = solve_flank(member, flank, blank_grid(member))
         target = target_of(member, flank, at)
         for tooth in range(12 if others else 1):
             settings, keep = target.settings.copy(), slice(None) if tooth == 0 else slice(22, 23)
@@ -109,7 +109,7 @@ def test_tooth_whose_form_is_unlike_the_others_is_not_the_one_that_is_corrected(
     """Four teeth in full, one of them with 20 um of spiral angle; of two teeth none is known to be the odd one."""
     files = []
     for tooth in range(4):
-        one = nominal_flank(gear_set.pinion, "pinion", "concave", blank_grid(gear_set.pinion), tooth=tooth)
+        one = nominal_flank(gear_set.pinion, "concave", blank_grid(gear_set.pinion), tooth=tooth)
         files.append(replace(one, deviation=20 * UM * (one.col / 4 - 1) * (tooth == odd) + 5 * UM * tooth))
     right = min(set(range(4)) - {odd})
     assert representative_tooth(join(files), "concave") == right

@@ -20,8 +20,8 @@ from gearmath.specs.flank_csv import flank_file, join
 def blank(gear_set):
     """``blank(stock, turn, advance)``: the pinion's space 0 with that much stock, clamped turned and advanced."""
     grid = blank_grid(gear_set.pinion)
-    header = flank_header(gear_set.pinion, "pinion", grid.shape, 0.1)
-    nominal = {flank: solve_flank(gear_set.pinion, "pinion", flank, grid) for flank in FLANKS}
+    header = flank_header(gear_set.pinion, grid.shape, 0.1)
+    nominal = {flank: solve_flank(gear_set.pinion, flank, grid) for flank in FLANKS}
 
     def make(stock, turn=0.0, advance=0.0):
         files = []

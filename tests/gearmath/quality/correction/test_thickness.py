@@ -27,7 +27,7 @@ def gained(member, name, settings):
     grid = blank_grid(member, 3, 3)
     middle = Grid(grid.axial[1:2, 1:2], grid.radial[1:2, 1:2])
     for flank in FLANKS:
-        nominal = solve_flank(member, name, flank, middle)
+        nominal = solve_flank(member, flank, middle)
         names = {
             n: float(np.degrees(v) if unit else v)
             for n, v, unit in zip(
@@ -42,7 +42,7 @@ def gained(member, name, settings):
         for _ in range(4):  # the tangent plane of the other surface at the place where the normal is
             on_line = nominal.point + t * nominal.normal
             place = Grid(on_line[:, 2:3], np.hypot(on_line[:, 0:1], on_line[:, 1:2]))
-            surface = solve_flank(other, name, flank, place)
+            surface = solve_flank(other, flank, place)
             t += float(np.sum((surface.point - on_line) * surface.normal) / np.sum(surface.normal * nominal.normal))
         total += t
     return total

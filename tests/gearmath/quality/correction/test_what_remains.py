@@ -25,7 +25,7 @@ Y, X = ROW / 2 - 1, COL / 4 - 1
 
 
 def nominal(flank):
-    return solve_flank(PINION, "pinion", flank, blank_grid(PINION))
+    return solve_flank(PINION, flank, blank_grid(PINION))
 
 
 def measured(shape):
@@ -34,9 +34,7 @@ def measured(shape):
     for flank in FLANKS:
         at, d = nominal(flank), shape(flank)
         point = at.point + d[:, None] * at.normal
-        files.append(
-            flank_file(flank_header(PINION, "pinion", (5, 9)), "pinion", flank, 0, ROW, COL, point, at.normal, d)
-        )
+        files.append(flank_file(flank_header(PINION, (5, 9)), "pinion", flank, 0, ROW, COL, point, at.normal, d))
     return join(files)
 
 

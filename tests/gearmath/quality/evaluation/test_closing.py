@@ -23,7 +23,7 @@ CORNERS = ((0, 0), (0, 8), (2, 4), (4, 0), (4, 8))
 @pytest.fixture(scope="module")
 def measured(gear_set):
     """A pinion with 2 um of uneven index and 0.5 um of noise; tooth 0 in full, and its corners again at the end."""
-    nominal = {flank: nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
+    nominal = {flank: nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
 
     def make(again=CORNERS, by_flank=False, sigma=0.5 * UM):
         rng, parts = np.random.default_rng(5), []

@@ -25,7 +25,7 @@ NO_CORNERS = (1, 5, 7, 11)
 def pinion(gear_set) -> FlankFile:
     """A whole run as programs make it: tooth 0 in full, corners on eight teeth, tooth 0 again; 3 um of uneven index."""
     spec = gear_set.pinion
-    nominal = {flank: nominal_flank(spec, "pinion", flank, blank_grid(spec)) for flank in FLANKS}
+    nominal = {flank: nominal_flank(spec, flank, blank_grid(spec)) for flank in FLANKS}
     parts = []
     for tooth in range(13):
         for one in nominal.values():

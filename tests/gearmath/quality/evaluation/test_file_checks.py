@@ -22,7 +22,7 @@ def good(gear_set):
     files = []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion), tooth=tooth)
+            one = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion), tooth=tooth)
             files.append(one if tooth == 0 else one.pick((one.row == 2) & (one.col == 4)))
     file = join(files)
     left = 1e-3 * (5.0 + 10.0 * file.row)

@@ -24,7 +24,7 @@ def nominal(gear_set) -> FlankFile:
     files = []
     for tooth in range(12):
         for flank in FLANKS:
-            one = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion), tooth=tooth)
+            one = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion), tooth=tooth)
             files.append(one if tooth == 0 else one.pick((one.row == 2) & (one.col == 4)))
     file = join(files)
     return replace(file, deviation=np.zeros(len(file)), uncertainty=np.full(len(file), NOISE))

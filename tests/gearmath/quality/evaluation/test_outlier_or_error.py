@@ -27,7 +27,7 @@ CORNERS = ((0, 0), (0, 8), (2, 4), (4, 0), (4, 8))
 def measured(gear_set):
     """``measured(name, places, whole, seed)``: a perfect member with 0.5 um of noise; some teeth in full."""
     nominal = {
-        (name, flank): nominal_flank(gear_set.member(name), name, flank, blank_grid(gear_set.member(name)))
+        (name, flank): nominal_flank(gear_set.member(name), flank, blank_grid(gear_set.member(name)))
         for name in ("pinion", "gear")
         for flank in FLANKS
     }

@@ -179,13 +179,13 @@ def nominal(member, name, deviation, teeth):
     grid, files = blank_grid(member), []
     row, col = (index.ravel() for index in np.indices(grid.shape))
     for flank in ("concave", "convex"):
-        points = solve_flank(member, name, flank, grid)
+        points = solve_flank(member, flank, grid)
         for tooth in teeth:
             a = 2 * np.pi * tooth / member.teeth
             turn = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]])
             R, n = points.point @ turn, points.normal @ turn
             d = deviation(R, n)
-            header = flank_header(member, name, grid.shape)
+            header = flank_header(member, grid.shape)
             files.append(flank_file(header, name, flank, tooth, row, col, R + d[:, None] * n, n, d))
     return join(files)
 
@@ -288,7 +288,7 @@ def reference_and_corners(gear_set, seat, noise, seeds):
     row, col = (index.ravel() for index in np.indices((5, 9)))
     parts = []
     for flank in ("concave", "convex"):
-        nominal = solve_flank(member, "pinion", flank, blank_grid(member))
+        nominal = solve_flank(member, flank, blank_grid(member))
         for tooth in range(member.teeth):
             about = 2 * np.pi * tooth / member.teeth
             c, s = np.cos(about), np.sin(about)
@@ -297,7 +297,7 @@ def reference_and_corners(gear_set, seat, noise, seeds):
             point, normal = nominal.point[keep] @ turn.T, nominal.normal[keep] @ turn.T
             off = normal @ [*seat[:2], 0] + np.cross(point, normal) @ [*seat[2:], 0]
             parts.append((flank, tooth, row[keep], col[keep], point, normal, off))
-    header = flank_header(member, "pinion", blank_grid(member).shape)
+    header = flank_header(member, blank_grid(member).shape)
     for seed in seeds:
         random, files = np.random.default_rng(seed), []
         for flank, tooth, r, k, point, normal, off in parts:

@@ -80,7 +80,7 @@ def test_rotation_and_clamping_are_found_side_by_side_and_thickness_and_pitch_st
 def perfect(gear_set, teeth=range(12)):
     """The pinion's reference points, and tooth 0 in full, without a deviation."""
     grid = blank_grid(gear_set.pinion)
-    files = [nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=k) for k in teeth for flank in FLANKS]
+    files = [nominal_flank(gear_set.pinion, flank, grid, tooth=k) for k in teeth for flank in FLANKS]
     file = join([one if one.tooth[0] == 0 else one.pick((one.row == 2) & (one.col == 4)) for one in files])
     return replace(file, deviation=np.zeros(len(file)))
 

@@ -24,7 +24,7 @@ REFERENCE = (2, 4)
 @pytest.fixture(scope="module")
 def pinion(gear_set):
     """``pinion(seed, cornered, noise)``: perfect, tooth 0 in full, the corners of some teeth and one place of all."""
-    nominal = [nominal_flank(gear_set.pinion, "pinion", each, blank_grid(gear_set.pinion)) for each in FLANKS]
+    nominal = [nominal_flank(gear_set.pinion, each, blank_grid(gear_set.pinion)) for each in FLANKS]
 
     def make(seed=0, cornered=(0, 1, 3, 4, 5, 6, 8, 9, 10), noise=0.2 * UM):
         files = []
@@ -118,7 +118,7 @@ def test_other_point_of_a_grid_that_is_off_a_little_is_said_and_kept(gear_set, p
 def test_what_two_teeth_have_at_their_reference_point_is_form(gear_set):
     """Two teeth in full, the same place 8 um high on both: the cutter did that, and the point is kept."""
     grid = blank_grid(gear_set.pinion)
-    one = nominal_flank(gear_set.pinion, "pinion", "convex", grid)
+    one = nominal_flank(gear_set.pinion, "convex", grid)
     change = np.where((one.row == 2) & (one.col == 4), 0.008, 0.0) + 0.2 * UM * np.sin(37.0 * np.arange(45))
     two = join([moved(replace(one, deviation=np.zeros(45), tooth=np.full(45, k)), change) for k in (0, 6)])
     found = find_outliers(two, 12)

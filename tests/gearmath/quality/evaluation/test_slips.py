@@ -25,7 +25,7 @@ CASES = {"between the flanks": (45, 20), "convex grid": (67, 20), "concave grid"
 @pytest.fixture(scope="module")
 def part(gear_set):
     """``part(again)``: nominal points of a pinion: tooth 0 in full, others at the middle, tooth 0 again at the end."""
-    nominal = {flank: nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
+    nominal = {flank: nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
 
     def make(again=CORNERS):
         parts = []

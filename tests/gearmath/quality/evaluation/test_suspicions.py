@@ -22,7 +22,7 @@ def flanks(gear_set) -> dict[str, FlankFile]:
     """Both flanks of tooth 0 in full, with 0.5 um of noise, by member."""
     found = {}
     for k, (name, spec) in enumerate(gear_set.members.items()):
-        file = join([nominal_flank(spec, name, flank, blank_grid(spec)) for flank in FLANKS])
+        file = join([nominal_flank(spec, flank, blank_grid(spec)) for flank in FLANKS])
         file = replace(file, deviation=np.zeros(len(file)), uncertainty=np.full(len(file), 0.5 * UM))
         found[name] = moved(file, 0.5 * UM * np.random.default_rng(k).standard_normal(len(file)))
     return found

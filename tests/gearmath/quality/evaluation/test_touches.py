@@ -52,7 +52,7 @@ def test_probing_the_nominal_member_gives_back_exactly_its_flanks(gear_set, tmp_
     assert len(file) == 2 * (45 + spec.teeth - 1 + 5)  # tooth 0 again at the end, as tooth z
     assert np.abs(file.deviation).max() <= 1e-5  # mm
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        nominal = solve_flank(spec, flank, blank_grid(spec))
         for tooth in range(spec.teeth + 1):
             turn = 2 * math.pi * tooth / spec.teeth
             c, s = math.cos(turn), math.sin(turn)

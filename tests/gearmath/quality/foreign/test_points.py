@@ -54,7 +54,7 @@ def smooth(count=45):
 
 
 def on_flank(member, name, flank, deviation, grid=None):
-    points = solve_flank(member, name, flank, places(member) if grid is None else grid)
+    points = solve_flank(member, flank, places(member) if grid is None else grid)
     return points.point + deviation[:, None] * points.normal, points.normal
 
 
@@ -97,7 +97,7 @@ def test_thickness_and_pitch_stay_where_all_files_share_one_rotation(gear_set):
     """Both flanks 5 µm too thick, tooth 3 shifted by 20 µm of arc on both: only the rotation of the whole goes."""
     member, parts, shifts = gear_set.gear, [], {}
     for flank in FLANKS:
-        points = solve_flank(member, "gear", flank, places(member))
+        points = solve_flank(member, flank, places(member))
         for tooth in (0, 3):
             deviation = np.full(45, 0.005)
             extra = 0.020 / np.hypot(*points.point[MIDDLE, :2]) if tooth == 3 else 0.0
@@ -243,9 +243,9 @@ def test_thickness_of_foreign_points_is_that_at_one_place_of_both_flanks(gear_se
 def test_a_machine_error_is_corrected_from_foreign_points(gear_set, altered):
     """Cut with the cutter 0.05 mm too far out: points on that very flank ask for a radial distance 0.05 mm less."""
     cut = altered(gear_set, "pinion", "concave", radial_distance=gear_set.pinion.concave.radial_distance + 0.05)
-    points = solve_flank(cut.pinion, "pinion", "concave", places(gear_set.pinion)).point
+    points = solve_flank(cut.pinion, "concave", places(gear_set.pinion)).point
     parts = [PointPart("p.txt", "concave", 0, around(points, 3)[::-1])]
-    whole = solve_flank(gear_set.pinion, "pinion", "convex", places(gear_set.pinion)).point
+    whole = solve_flank(gear_set.pinion, "convex", places(gear_set.pinion)).point
     parts.append(PointPart("q.txt", "convex", 0, around(whole, 3)))
     file = foreign_file(parts, Frame(), gear_set, "pinion", "each").file
     found = correct(gear_set.pinion, "pinion", file, ("radial_distance", "work_rotation_offset"))

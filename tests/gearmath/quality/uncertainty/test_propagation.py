@@ -62,7 +62,7 @@ def found(figures, model):
 def small(gear_set):
     """A perfect concave flank of the pinion: a grid of 3 x 3 on tooth 0, the reference point on the others."""
     grid = blank_grid(gear_set.pinion, 3, 3)
-    files = [nominal_flank(gear_set.pinion, "pinion", "concave", grid, tooth=k) for k in range(12)]
+    files = [nominal_flank(gear_set.pinion, "concave", grid, tooth=k) for k in range(12)]
     file = join([one if k == 0 else one.pick(one.row * 3 + one.col == 4) for k, one in enumerate(files)])
     return replace(file, deviation=np.zeros(len(file)))
 
@@ -130,7 +130,7 @@ def test_contenders_are_all_that_can_be_the_largest():
 def dense(gear_set):
     """3 x 5 points on all perfect flanks of the pinion, tooth 0 once more at the end: tilt and drift are told too."""
     grid = blank_grid(gear_set.pinion, 3, 5)
-    files = [nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=k) for k in range(12) for flank in FLANKS]
+    files = [nominal_flank(gear_set.pinion, flank, grid, tooth=k) for k in range(12) for flank in FLANKS]
     file = join(files + [replace(one, tooth=one.tooth + 12) for one in files[:2]])
     return replace(file, deviation=np.zeros(len(file)))
 

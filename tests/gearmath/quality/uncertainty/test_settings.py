@@ -30,7 +30,7 @@ FREE = ("radial_distance", "cradle_angle", "machine_center_to_crossing_point", "
 
 
 def target(spec, member, flank, rows=5, columns=9) -> FlankTarget:
-    nominal = solve_flank(spec, member, flank, blank_grid(spec, rows, columns))
+    nominal = solve_flank(spec, flank, blank_grid(spec, rows, columns))
     along, up = local_coordinates(nominal.point.reshape(rows, columns, 3), (rows // 2, columns // 2))
     return target_of(spec, flank, nominal, np.stack([along.ravel(), up.ravel()], axis=1))
 

@@ -81,7 +81,7 @@ def test_growth_is_what_a_larger_flank_leaves(gear_set, vertical, member):
     """The deviation of the points of a work that is larger by 1e-4, along the normals of the one of the drawing."""
     spec = gear_set.member(member)
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        nominal = solve_flank(spec, flank, blank_grid(spec))
         slope = sensitivities(spec, member, flank, blank_grid(spec), vertical, PROBE)[:, 5]
         grown = np.sum((1e-4 * nominal.point) * nominal.normal, axis=1)
         np.testing.assert_allclose(1e-4 * slope, grown, rtol=0, atol=1e-12)
