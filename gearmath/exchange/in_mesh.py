@@ -60,7 +60,7 @@ def poses(pair: BevelSet, side: str = "drive", rotation: float = 0.0) -> dict[st
 def pair_patches(pair: BevelSet, side: str = "drive") -> list[tuple[str, list[Patch]]]:
     """Both members in mesh as closed surfaces of patches, by name."""
     return [
-        (name, [patch.moved(pose.matrix, pose.shift) for patch in member_patches(pair.member(name), name)])
+        (name, [patch.moved(pose.matrix, pose.shift) for patch in member_patches(pair.member(name))])
         for name, pose in poses(pair, side).items()
     ]
 

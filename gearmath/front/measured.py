@@ -108,7 +108,7 @@ class Measurement(Shown):
         from gearmath.front.evaluated import Evaluation
 
         with about(self.source):
-            found = evaluate_member(self.file, self.member.spec, self.member.name, registered, progress, rotated)
+            found = evaluate_member(self.file, self.member.spec, registered, progress, rotated)
         return Evaluation(self, found)
 
     def compensate(self, settings: str | Sequence[str] = "few", **options: Any) -> Correction:
@@ -149,7 +149,7 @@ class Measurement(Shown):
         from gearmath.quality.correction.stock import share_stock
 
         with about(self.source):
-            return share_stock(self.member.spec, self.member.name, self.file, advance, least)
+            return share_stock(self.member.spec, self.file, advance, least)
 
     @checked_call(**dict.fromkeys(("part_number", "date", "operator", "machine", "probe"), Text()))
     def report(
@@ -230,7 +230,7 @@ def load_measurement(path: str | Path, member: Member | GearSet | str | Path) ->
     if file.member != one.name:
         raise InputError(f"{path}: member = {file.member}: the measurement of the {one.name} is wanted")
     with about(Path(path)):
-        check_belongs(one.spec, one.name, file)
+        check_belongs(one.spec, file)
     return Measurement(one, file, Path(path))
 
 

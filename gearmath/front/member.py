@@ -47,6 +47,9 @@ class Member(Shown):
     name: str
     spec: MemberSpec
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spec", self.spec.named(self.name))  # one that was made by hand was in no set yet
+
     @property
     def teeth(self) -> int:
         """How many."""
@@ -151,7 +154,7 @@ class Member(Shown):
 
         require_kernel()
         progress = begin(4, "stage")
-        bodies = [(self.name, member_patches(self.spec, self.name))]
+        bodies = [(self.name, member_patches(self.spec))]
         progress(2)
         return write_step(Path(path), bodies, progress)
 

@@ -24,7 +24,7 @@ class Dimension:
     kind: Literal["length", "angle"] = "length"
 
 
-def dimensions(member: Member, name: str) -> list[Dimension]:
+def dimensions(member: Member) -> list[Dimension]:
     """What a drawing of a member states, beside the cone angles. Raises InputError where the flanks cannot be cut."""
     blank, ends = member.blank, evaluate("blank_ends", {"blank": member.blank.vector})
     mean, sine = transverse_module(member), math.sin(blank.delta)

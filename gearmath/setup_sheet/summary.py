@@ -94,7 +94,7 @@ def summary_sheet(pair: BevelSet) -> str:
             page.paragraph("The settings are corrected ones; those of the nominal flanks stand in the set file.")
         for unit in UNITS:
             page.table(f"Blank, from the pitch apex; {unit.name}", ["figure", "value"], list(_blank(member, unit)))
-        found = dimensions(member, name)
+        found = dimensions(member)
         for unit in UNITS:
             page.table(f"Dimensions of the teeth; {unit.name}", ["figure", "value"], list(_dimensions(found, unit)))
         for unit in UNITS:

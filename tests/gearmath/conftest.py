@@ -88,7 +88,7 @@ def mill(program: Callable[..., MachinePath], vertical: MillingMachine) -> Calla
         tolerance: float = DEFAULT_TOLERANCE,
     ) -> FlankFile:
         path = program(gear_set, member, spaces, tolerance)
-        return mill_member(path, gear_set.member(member), member, vertical, errors)
+        return mill_member(path, gear_set.member(member), vertical, errors)
 
     return run
 

@@ -23,7 +23,7 @@ class SpaceBody:
     good to some 5 µm on flanks of usual curvature, which is what a check for collisions needs.
     """
 
-    def __init__(self, member: Member, name: str) -> None:
+    def __init__(self, member: Member) -> None:
         space = tooth_space(member, _COLUMNS)
         low, high = space.ordered
         gamma_f, gamma_a = member.blank.delta_f, member.blank.delta_a

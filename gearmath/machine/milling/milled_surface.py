@@ -28,7 +28,7 @@ class MilledSurface:
     surface of second degree through them. ``name`` is that of the file in messages.
     """
 
-    def __init__(self, file: FlankFile, member: Member, member_name: str, name: str) -> None:
+    def __init__(self, file: FlankFile, member: Member, name: str) -> None:
         self._member, self._name, self._teeth = member, name, member.teeth
         known = np.isfinite(file.deviation) & (file.tooth < member.teeth)
         self._file = file.pick(known)
@@ -36,7 +36,6 @@ class MilledSurface:
         self._reference = _pair(file.header["reference_point"], ",")
         self._margin = float(file.header["margins"].split(",")[0])
         self._grid = blank_grid(member, *self._shape, self._margin)
-        self._member_name = member_name
         self._surfaces: dict[tuple[str, int], ca.Function] = {}
         self._rates: dict[str, np.ndarray] = {}
 

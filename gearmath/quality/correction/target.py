@@ -26,12 +26,7 @@ _SAME_POINT = 0.01
 
 
 def flank_target(
-    member: Member,
-    name: str,
-    flank: str,
-    measured: FlankFile,
-    tooth: int | None = None,
-    excluded: np.ndarray | None = None,
+    member: Member, flank: str, measured: FlankFile, tooth: int | None = None, excluded: np.ndarray | None = None
 ) -> FlankTarget:
     """One flank of a file with the nominal points of the set, of a tooth that has most points if none is given.
 

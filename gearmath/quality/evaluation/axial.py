@@ -56,7 +56,7 @@ class Axial:
         }
 
 
-def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, columns: np.ndarray) -> Axial:
+def axial_shift(file: FlankFile, member: Member, rows: NominalRows, columns: np.ndarray) -> Axial:
     """What the deviations of a file say of the axial position; ``columns`` (n,6) are those of (18.2)."""
     used = np.isfinite(file.deviation)
     axial, lever, clamping = columns[used, 2], columns[used, 5], columns[used][:, [0, 1, 3, 4]]
@@ -73,7 +73,7 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
     uncertainty = math.sqrt(float(rest @ rest) / spare / size) if spare > 0 else math.nan
     share = {
         TWIN: 1.0,
-        "other settings": _by_settings(file, member, name, rows, used, axial),
+        "other settings": _by_settings(file, member, rows, used, axial),
         "clamping": _share(clamping, axial),
     }
     before, after = values - _projected(turning, values), float(rest @ rest)
@@ -110,7 +110,7 @@ def explained_by(column: np.ndarray, file: FlankFile, columns: np.ndarray) -> Ex
 
 
 def _by_settings(
-    file: FlankFile, member: Member, name: str, rows: NominalRows, used: np.ndarray, axial: np.ndarray
+    file: FlankFile, member: Member, rows: NominalRows, used: np.ndarray, axial: np.ndarray
 ) -> float | None:
     """How much of an axial shift the other settings imitate; each flank has its own where it has its own pass."""
     try:

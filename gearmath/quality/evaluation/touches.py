@@ -24,9 +24,7 @@ _SAME_POINT = 3.0
 _SAME_TOUCH = 0.02
 
 
-def measured_member(
-    touches: Touches, member: Member, name: str, machine: MillingMachine, calibration: Calibration
-) -> FlankFile:
+def measured_member(touches: Touches, member: Member, machine: MillingMachine, calibration: Calibration) -> FlankFile:
     """The corrected contact points (15.5) of the touches, with their deviations from the nominal flanks.
 
     Points come in the order in which they were touched; tooth z is tooth 0 again. The touches of one point are
@@ -37,11 +35,11 @@ def measured_member(
     ``search_lines`` tells more of their place.
     """
     grid = blank_grid(member)
-    check_on_grid(touches, member, name, grid)
+    check_on_grid(touches, member, grid)
     tip, _ = kernel("probe_tip")(
         touches.axes, probe_height(machine, calibration), calibration.tip_offset, machine.pivot
     )
-    point, normal = _nominal(touches, member, name, grid)
+    point, normal = _nominal(touches, member, grid)
     # at the origin of the work, without offsets: the normal in the axes of the machine
     (machine_normal,) = kernel("probe_axes")(normal, *touches.axes[:, 3:].T, 0.0, np.zeros(3), np.zeros(3))
     (radius,) = kernel("effective_radius")(machine_normal[:, :3], calibration.tip_radius, lobing(calibration))
@@ -53,10 +51,10 @@ def measured_member(
     return _averaged(header, touches, contact, normal, deviation)
 
 
-def check_on_grid(touches: Touches, member: Member, name: str, grid: Grid) -> None:
+def check_on_grid(touches: Touches, member: Member, grid: Grid) -> None:
     """Raise InputError for touches of another member, or off its teeth and its grid."""
-    if touches.member != name:
-        raise InputError(f"the touches are of the {touches.member}, not of the {name}")
+    if touches.member != member.name:
+        raise InputError(f"the touches are of the {touches.member}, not of the {member.name}")
     rows, columns = grid.shape
     for what, values, last in (
         ("row", touches.row, rows - 1),
@@ -64,10 +62,12 @@ def check_on_grid(touches: Touches, member: Member, name: str, grid: Grid) -> No
         ("tooth", touches.tooth, member.teeth),
     ):
         if (values > last).any():
-            raise InputError(f"{what} = {int(values.max())}: the {name} and its grid {rows}x{columns} end at {last}")
+            raise InputError(
+                f"{what} = {int(values.max())}: the {member.name} and its grid {rows}x{columns} end at {last}"
+            )
 
 
-def _nominal(touches: Touches, member: Member, name: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def _nominal(touches: Touches, member: Member, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Points and normals (n,3) that the touches were meant for."""
     point, normal = np.empty((2, len(touches), 3))
     turn = 2 * math.pi * touches.tooth / member.teeth

@@ -36,7 +36,7 @@ def _slopes() -> ca.Function:
 
 
 def sensitivities(
-    member: Member, name: str, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
+    member: Member, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> np.ndarray:
     """Change of the deviation at the points of a flank per unit of X, Y, Z, A, squareness and growth (n,6).
 
@@ -63,7 +63,7 @@ def sensitivities(
 
 
 def touch_covariance(
-    file: FlankFile, member: Member, name: str, how: MeasuringModel, machine: MillingMachine, calibration: Calibration
+    file: FlankFile, member: Member, how: MeasuringModel, machine: MillingMachine, calibration: Calibration
 ) -> Covariance:
     """Covariance of the deviations (n,) of a measured file, in its order.
 
@@ -74,7 +74,7 @@ def touch_covariance(
     for flank in FLANKS:
         here = file.flank == flank
         if here.any():
-            slope[here] = sensitivities(member, name, flank, file_grid(file, member, flank), machine, calibration)[
+            slope[here] = sensitivities(member, flank, file_grid(file, member, flank), machine, calibration)[
                 place[here]
             ]
     linear = np.linalg.norm(slope[:, :3], axis=1) * how.position_um / 1000

@@ -298,7 +298,7 @@ def test_no_uncertainty_on_the_sheet_is_zero(page):
 def test_sheet_and_picture_take_the_same_off_at_the_ring(gear_set, tmp_path, seat):
     """Whether or not a clamping was taken out: the rotation that both flanks have in common is in neither."""
     file = written(tmp_path / "m.csv", gear_set, seat)
-    found = evaluate_member(read_flank_csv(file), gear_set.pinion, "pinion")
+    found = evaluate_member(read_flank_csv(file), gear_set.pinion)
     sheet = flank_charts(ReportedMeasurement("t", "m.csv", gear_set.pinion, found, None), {})
     words = [unescape(re.search(r">([^<]*taken off there[^<]*)<", svg)[1]) for svg, _ in sheet]
     labels = [axes.get_xlabel() for axes in evaluation_figure("t", found).axes]

@@ -93,10 +93,10 @@ def test_corrected_settings_are_those_that_compensate_writes(command, measured, 
     assert 2 <= len(names) < 14  # the few that are corrected
     spec = load_bevel_set(bundled(SET)).pinion
     file = read_flank_csv(measured)
-    found = evaluate_member(file, spec, "pinion")
+    found = evaluate_member(file, spec)
     judged = independent(np.full(len(file), 0.3e-3)).carried(judged_by_measured(file, spec, found))
-    noise = noise_of(spec, "pinion", found.file, judged)
-    correction = correct(spec, "pinion", found.file, few=True, noise=noise)
+    noise = noise_of(spec, found.file, judged)
+    correction = correct(spec, found.file, few=True, noise=noise)
     for flank, name in names:
         vector = correction.settings[flank][SETTINGS.index(name)]
         value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector

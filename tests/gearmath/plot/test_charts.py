@@ -246,7 +246,7 @@ def test_a_file_name_with_dollars_is_a_name_and_no_formula(gear_set):
     spec = gear_set.pinion
     file = join([nominal_flank(spec, name, blank_grid(spec)) for name in FLANKS])
     file = replace(file, deviation=np.zeros(len(file)))
-    found = evaluate_member(file, spec, "pinion", registered=False)
+    found = evaluate_member(file, spec, registered=False)
     for figure in (evaluation_figure("a$^b$.csv", found), uncertainty_figure("a$^b$.csv", figures())):
         FigureCanvasAgg(figure).draw()
         assert figure.get_suptitle().startswith("a$^b$.csv")

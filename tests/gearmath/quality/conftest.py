@@ -162,7 +162,6 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
 
     def make(
         member: Member,
-        name: str,
         seat: Sequence[float] = (0, 0, 0, 0),
         teeth: Sequence[int] = range(8),
         places: Sequence[int] | None = None,
@@ -185,7 +184,9 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
             for flank in FLANKS:
                 point, normal, deviation = (each[tooth == i] for each in found[flank])
                 touched = point + deviation[:, None] * normal
-                files.append(flank_file(header, name, flank, i, row[where], col[where], touched, normal, deviation))
+                files.append(
+                    flank_file(header, member.name, flank, i, row[where], col[where], touched, normal, deviation)
+                )
         return join(files)
 
     return make

@@ -37,7 +37,7 @@ def left_on_the_concave_fillet(member: Member) -> float:
     """The least that all cutters leave on the fillet [mm]."""
     space = tooth_space(member, 5)
     (fillet,) = (one for one in nominal_surfaces(member, space) if one.name == "concave fillet")
-    return float(left_by_exact_motion(member, "pinion", space, fillet).min())
+    return float(left_by_exact_motion(member, space, fillet).min())
 
 
 def test_no_cutter_of_a_designed_pinion_cuts_into_the_other_fillet(pinion) -> None:

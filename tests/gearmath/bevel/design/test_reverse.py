@@ -54,7 +54,7 @@ def known(member: Member, **changes) -> KnownMember:
     return replace(found, **changes)
 
 
-def distance(found: Member, true: Member, name: str, flank: str) -> np.ndarray:
+def distance(found: Member, true: Member, flank: str) -> np.ndarray:
     """Distance [mm] of two flanks at 11x21 places, along the normals of the true one.
 
     By the point of the flank found that stands at the same place of the blank, and its normal: no fit, and no kernel
@@ -76,7 +76,7 @@ def test_flanks_of_bundled_members_are_found_again_from_noisy_points_and_a_blank
     member = pair.member(name)
     found = reverse(known(member), given_flanks(points_of(member, NOISE), member.teeth), name)
     for flank in FLANKS:
-        assert np.abs(distance(found.member, member, name, flank)).max() <= SIGMAS * NOISE
+        assert np.abs(distance(found.member, member, flank)).max() <= SIGMAS * NOISE
         assert found.flanks[flank].rms < found.flanks[flank].rms_before / 50
     check_pair(BevelSet(title="found", source="test", shaft_angle=pair.shaft_angle, **{name: found.member}))
 
@@ -86,7 +86,7 @@ def test_points_without_noise_give_a_published_flank_back_to_rounding():
     member = bundled_set("nasa_tp3096_12x36").member("pinion")
     found = reverse(known(member), given_flanks(points_of(member), member.teeth), "pinion")
     for flank in FLANKS:
-        assert np.abs(distance(found.member, member, "pinion", flank)).max() <= 1e-4
+        assert np.abs(distance(found.member, member, flank)).max() <= 1e-4
 
 
 def mirrored(file: FlankFile) -> FlankFile:
@@ -115,7 +115,7 @@ def test_flanks_of_a_tooth_are_taken_as_those_of_a_space():
     shifted = {**given, "convex": given["convex"].turned(2 * math.pi / member.teeth)}
     first, second = (reverse(known(member), one, "gear").member for one in (given, shifted))
     for flank in FLANKS:
-        assert np.abs(distance(first, second, "gear", flank)).max() <= 1e-6
+        assert np.abs(distance(first, second, flank)).max() <= 1e-6
 
 
 def test_all_teeth_of_a_file_count_alike():
@@ -253,4 +253,4 @@ def test_known_cutter_and_the_curvature_of_the_flanks_lead_to_the_same_flank():
     for radius in (None, data.cutter.cutter_radius):
         found = reverse(known(member, cutter_radius=radius), given, "pinion")
         for flank in FLANKS:
-            assert np.abs(distance(found.member, member, "pinion", flank)).max() <= 1e-4
+            assert np.abs(distance(found.member, member, flank)).max() <= 1e-4

@@ -47,7 +47,7 @@ def left_in_the_middle(member: Member) -> float:
     point = np.stack([radius * np.cos(angle), radius * np.sin(angle), z], axis=-1).reshape(-1, 3)
     index = np.zeros(len(point), dtype=int)
     lines = Surface("root", point, up.reshape(-1, 3), index, index, np.full(len(point), -1.0))
-    return float(left_by_exact_motion(member, "pinion", space, lines).max())
+    return float(left_by_exact_motion(member, space, lines).max())
 
 
 @pytest.mark.parametrize(("concave", "convex", "radius"), CUTTERS)

@@ -71,7 +71,7 @@ def some_points(
 ) -> tuple[str, Targets]:
     """A program that touches the reference points of both flanks of some teeth."""
     member = bevel_set.member(MEMBER)
-    targets, level, room = probed(member, MEMBER, machine, calibration, "POINTS", (), True, ())
+    targets, level, room = probed(member, machine, calibration, "POINTS", (), True, ())
     targets = targets.pick(targets.tooth < teeth)
     notes = (*probing_notes(bevel_set, MEMBER, machine, calibration, len(targets), 1),)
     text = write_touches("POINTS", notes, targets, MEMBER, member.teeth, machine, calibration, level, room)

@@ -52,13 +52,13 @@ def judged(widened, vertical):
     spec = gear_set.pinion
     space = tooth_space(spec, 7)
     text = cutting_program(gear_set, "pinion", vertical, "CUT", CuttingJob((0,), 1e-4))
-    runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "pinion", vertical, None, space, SHARP_EDGE)
+    runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, vertical, None, space, SHARP_EDGE)
     made = as_cut(spec, space)
     own = tooth_space(made, 7)
 
     def judge(runs, made=made):
-        faults = [str(one) for one in metal_left(runs, made, "pinion", vertical, Stated.of(text), own).faults]
-        *_, root = surface_states(None, made, "pinion", vertical, None, (0,), runs=runs, space=own)
+        faults = [str(one) for one in metal_left(runs, made, vertical, Stated.of(text), own).faults]
+        *_, root = surface_states(None, made, vertical, None, (0,), runs=runs, space=own)
         return faults, root
 
     return made, runs, judge
@@ -72,7 +72,7 @@ def test_correction_changes_no_cutter(widened, flanks):
     made = as_cut(spec, space)
     own = tooth_space(made, 3)
     assert all(abs(own.slots[flank].most - space.slots[flank].most) > 0.01 for flank in FLANKS)  # mm
-    for cut in Cut.of(spec, "pinion"):
+    for cut in Cut.of(spec):
         assert cutter_of(made, cut.flanks, own) == cutter_of(spec, cut.flanks, space)
 
 

@@ -45,8 +45,8 @@ def said_of(program, pattern=None, wrong="", count=1):
         assert found, pattern
     try:
         path = execute(text, "CUT", Setup.of(MACHINE))
-        runs = runs_of(path, spec, "gear", MACHINE, None, space, SHARP_EDGE)
-        return [str(one) for one in faults_of(text, path, runs, spec, "gear", MACHINE)]
+        runs = runs_of(path, spec, MACHINE, None, space, SHARP_EDGE)
+        return [str(one) for one in faults_of(text, path, runs, spec, MACHINE)]
     except InputError as error:
         return [str(error)]
 

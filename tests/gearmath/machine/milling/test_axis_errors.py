@@ -196,7 +196,7 @@ def test_eccentric_and_tilted_work_deviates_by_what_it_is_moved_against_the_cutt
         assert np.ptp(expected) > 1e-3
 
 
-def by_rigid_motion(witness, spec, member, flank, height, moved):
+def by_rigid_motion(witness, spec, flank, height, moved):
     """What is left on the grid where the tool moves by ``moved`` (3,) in the machine at contact, against its teeth.
 
     ``moved`` gets X Y Z A B (5,) of the contact and its place in the machine p_m = M(B) Rz(-A) p_w, and everything is
@@ -240,7 +240,7 @@ def one_space(gear_set, program, vertical):
     @cache
     def left(member, errors=None):
         shop = None if errors is None else wrong(axes=errors)
-        return mill_member(paths[member], gear_set.member(member), member, vertical, shop)
+        return mill_member(paths[member], gear_set.member(member), vertical, shop)
 
     return left
 
@@ -257,7 +257,7 @@ def test_axis_that_errs_leaves_what_the_rigid_motion_says(gear_set, one_space, v
     files = one_space(member, errors), one_space(member, opposite), one_space(member)
     for flank in FLANKS:
         one, other, nominal = (file.select(flank).deviation for file in files)
-        expected = by_rigid_motion(witness, gear_set.member(member), member, flank, vertical.pivot_height, moved)
+        expected = by_rigid_motion(witness, gear_set.member(member), flank, vertical.pivot_height, moved)
         assert np.abs(expected).max() > 10 * TOLERANCE
         np.testing.assert_allclose((one - other) / 2, expected, rtol=0, atol=TOLERANCE / 3)
         np.testing.assert_allclose((one + other) / 2, nominal, rtol=0, atol=TOLERANCE)
@@ -297,7 +297,7 @@ def test_ball_screw_ripple_does_not_hide_between_the_ends_of_blocks(gear_set, pr
     fine = replace(coarse, axes=axes, inner=np.zeros(len(own), dtype=bool), **others)
     member = gear_set.gear
     none, one, other = (
-        mill_member(path, member, "gear", vertical, errors).deviation
+        mill_member(path, member, vertical, errors).deviation
         for path, errors in ((coarse, None), (coarse, screw), (fine, screw))
     )
     assert np.abs(one - none).max() > 1e-3
@@ -329,7 +329,7 @@ def test_backlash_turns_a_milled_flank_by_half_of_it_against_the_roll(gear_set, 
         (direction,) = set(np.sign(steps[np.abs(steps) > 1e-9]).tolist())
     offset = AxisErrors(A=-direction * 10.0 / 3600)
     one, other, none = (
-        mill_member(path, gear_set.member(member), member, vertical, errors).deviation
+        mill_member(path, gear_set.member(member), vertical, errors).deviation
         for errors in (wrong(axes=AxisErrors(A_backlash_arcsec=20.0)), wrong(axes=offset), None)
     )
     assert np.abs(one - none).max() > 5e-4

@@ -91,7 +91,7 @@ def test_blades_leave_flanks_fillets_and_root_of_the_set() -> None:
     """By the crossings of single blades with lines through the nominal surfaces."""
     member = pair().member("pinion")
     assert abs(member.concave.cutter_tilt) > 3
-    for state in surface_states(path(), member, "pinion", machine(), spaces=(7,)):
+    for state in surface_states(path(), member, machine(), spaces=(7,)):
         assert state.unmet == 0, state
         assert state.lowest > -1e-4, state
         assert state.highest < 2e-3, state  # scallops of a coarse program
@@ -129,8 +129,8 @@ def test_root_of_a_formate_gear_is_where_its_blades_leave_it() -> None:
     assert member.concave.blade_tip_height == member.convex.blade_tip_height == 0
     space = tooth_space(member, 7)
     cutting = execute(cutting_program(made, "gear", machine(), "HOB", CuttingJob(range(38), 5e-4)), "HOB.MPF")
-    runs = runs_of(cutting, member, "gear", machine(), None, space)
-    for state in surface_states(None, member, "gear", machine(), spaces=(2,), runs=runs, space=space):
+    runs = runs_of(cutting, member, machine(), None, space)
+    for state in surface_states(None, member, machine(), spaces=(2,), runs=runs, space=space):
         assert state.unmet == 0, state
         assert max(-state.lowest, state.highest) < 2e-4, state
 
@@ -141,9 +141,9 @@ def test_tips_of_a_space_that_narrows_towards_the_toe_stay_off_the_other_fillet(
     made = accepted(checked(TILTED | changes, DesignData, "narrow"))[0].pair
     member = made.member("pinion")
     space = tooth_space(member, 7)
-    runs = runs_of(path_of(made), member, "pinion", machine(), None, space)
+    runs = runs_of(path_of(made), member, machine(), None, space)
     (run,) = runs
-    for state in surface_states(None, member, "pinion", machine(), spaces=(2,), runs=runs, space=space):
+    for state in surface_states(None, member, machine(), spaces=(2,), runs=runs, space=space):
         assert state.unmet == 0, state
         assert state.lowest > -1e-4, state
         assert state.highest < 2e-3, state
@@ -152,7 +152,7 @@ def test_tips_of_a_space_that_narrows_towards_the_toe_stay_off_the_other_fillet(
         for edge in run.blades.edges
     )
     runs = [replace(run, blades=replace(run.blades, edges=longer))]
-    states = surface_states(None, member, "pinion", machine(), spaces=(2,), runs=runs, space=space)
+    states = surface_states(None, member, machine(), spaces=(2,), runs=runs, space=space)
     assert min(state.lowest for state in states if state.surface == "concave fillet") < -5e-3
 
 

@@ -118,7 +118,7 @@ def test_gear_errors_are_corrected_on_the_pinion_alone(header, set_name):
     pair = pair_of(set_name)
     gear, pinion = measured(header, pair.gear, "gear", errors()), measured(header, pair.pinion, "pinion", 0 * errors())
     moved = moved_to_mate(pair, "gear", gear, pinion)
-    correction = correct(pair.pinion, "pinion", pinion, added=moved)
+    correction = correct(pair.pinion, pinion, added=moved)
     for flank in FLANKS:
         target = target_of(pair.pinion, flank, solve_flank(pair.pinion, flank, blank_grid(pair.pinion)))
         cut, _ = predicted(target, correction.settings[flank])

@@ -77,7 +77,7 @@ def pitch_errors(seed, size):
 def test_reference_point_that_its_own_corners_deny_is_left_out(gear_set, pinion, size):
     """Tooth 6, its four corners unmoved: no grade is made of it, and the other flank keeps its own."""
     file = pinion()
-    found = evaluate_member(off(file, at(file, "convex", 6), size), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "convex", 6), size), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("convex flank, tooth 6, row 2, col 4: ")
     assert "off the other points of its tooth; left out" in line
@@ -98,7 +98,7 @@ def test_point_off_its_tooth_is_found_among_uneven_teeth(pinion, place):
 @pytest.mark.parametrize("size", [0.006, 0.012, -0.012])
 def test_reference_point_of_a_grid_that_is_off_does_not_zero_it(gear_set, pinion, size):
     file = pinion()
-    found = evaluate_member(off(file, at(file, "concave", 0), size), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "concave", 0), size), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("concave flank, tooth 0, row 2, col 4: ")
     assert line.endswith("and the tooth would be zeroed and indexed by it; left out")
@@ -108,7 +108,7 @@ def test_reference_point_of_a_grid_that_is_off_does_not_zero_it(gear_set, pinion
 
 def test_other_point_of_a_grid_that_is_off_a_little_is_said_and_kept(gear_set, pinion):
     file = pinion()
-    found = evaluate_member(off(file, at(file, "convex", 0, (3, 6)), 0.005), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "convex", 0, (3, 6)), 0.005), gear_set.pinion)
     assert found.left_out == ()
     (line,) = (each for each in found.remarks if "row 3, col 6" in each)
     assert "um off the surface of fourth degree through the others; kept" in line
@@ -130,12 +130,12 @@ def test_what_two_teeth_have_at_their_reference_point_is_form(gear_set):
 def test_only_point_of_a_flank_that_the_other_flank_does_not_confirm_is_doubtful(gear_set, pinion, size):
     """Tooth 7 has its reference points only."""
     file = pinion()
-    found = evaluate_member(off(file, at(file, "convex", 7), size), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "convex", 7), size), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("convex flank, tooth 7, row 2, col 4: ")
     assert "no other point of the tooth confirms it" in line
     both = arcs_off(file, {("convex", 7): size, ("concave", 7): size})
-    assert evaluate_member(both, gear_set.pinion, "pinion").left_out == ()
+    assert evaluate_member(both, gear_set.pinion).left_out == ()
 
 
 def none_left_out(file):
