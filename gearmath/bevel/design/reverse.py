@@ -108,7 +108,7 @@ class ReversedMember(Shown):
 def reverse(known: KnownMember, given: dict[str, GivenFlank], name: str) -> ReversedMember:
     """The member whose flanks reproduce the given ones, from nothing but its blank and its method.
 
-    ``name`` is the member's in messages. Raises InputError where the points are not of this blank or hand, or where no
+    ``name`` is that of the member. Raises InputError where the points are not of this blank or hand, or where no
     settings come within ``LIMIT``, ComputationError where the search finds no settings at all.
     """
     means = {}
