@@ -31,7 +31,7 @@ def pair(clamped, pinion) -> tuple[FlankFile, FlankFile]:
     """The pinion in a bad seat and in a good one: two teeth in full, corners and reference point of all others."""
     index = {flank: 1e-5 * np.sin(3 * np.arange(12)) for flank in ("concave", "convex")}
     given = {"teeth": TEETH, "places": [0, 8, 22, 36, 44], "whole": (0, 6), "index": index, "form": form}
-    return clamped(pinion, "pinion", SEAT, **given), clamped(pinion, "pinion", **given)
+    return clamped(pinion, SEAT, **given), clamped(pinion, **given)
 
 
 def test_registered_figures_are_those_of_the_gear_in_a_good_seat(pair, pinion):

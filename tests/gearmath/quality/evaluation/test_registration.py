@@ -81,7 +81,7 @@ def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title,
     """Both hands and both members: to 0.1 µm, tilt over the face width, and at least 99 % of the effect is gone."""
     member = witnessed(title, name)
     given = {"teeth": around(member), "places": places, "index": uneven(member), "form": form}
-    measured, truth = (clamped(member, name, seat, **given) for seat in (SEAT, np.zeros(4)))
+    measured, truth = (clamped(member, seat, **given) for seat in (SEAT, np.zeros(4)))
     found = register(measured, member)
     assert max(off_by(found, SEAT, member)) < TENTH
     assert found.tilt_found
@@ -99,7 +99,7 @@ def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title,
 def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear_set):
     """0.4 mm and 0.2°: the first step misses by more than 1 µm, the iteration does not."""
     member, seat = gear_set.pinion, np.array([0.3, -0.25, 2e-3, 3e-3])
-    found = register(clamped(member, "pinion", seat, around(member), FIVE), member)
+    found = register(clamped(member, seat, around(member), FIVE), member)
     assert max(off_by(found, seat, member)) < TENTH
     assert np.abs(found.file.deviation).max() < TENTH
 
@@ -107,9 +107,9 @@ def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear
 @pytest.mark.parametrize("title", ["nasa_tp3096_12x36", "spiral_7x43"])
 def test_first_harmonic_of_the_index_stays_in_the_pitch(clamped, title):
     """10 arcsec of the A axis on every tooth: eccentricity does the same to one flank, but not at every place."""
-    name, member = "pinion", witnessed(title, "pinion")
+    member = witnessed(title, "pinion")
     index = uneven(member, 0.0, math.radians(10 / 3600))
-    file = clamped(member, name, SEAT, range(member.teeth), FIVE, index)
+    file = clamped(member, SEAT, range(member.teeth), FIVE, index)
     found = register(file, member)
     assert max(off_by(found, SEAT, member)) < TENTH
     for flank in ("concave", "convex"):
@@ -121,7 +121,7 @@ def test_ordinary_file_gives_the_eccentricity_at_its_height_and_says_what_it_doe
     """One place on all teeth but one: tilt is dropped in words; without tilt the eccentricity is exact."""
     member, index = gear_set.pinion, uneven(gear_set.pinion)
     index["convex"] = index["concave"]
-    file = clamped(member, "pinion", SEAT * [1, 1, 0, 0], range(12), [22], index, form, whole=[0])
+    file = clamped(member, SEAT * [1, 1, 0, 0], range(12), [22], index, form, whole=[0])
     found = register(file, member)
     assert not found.tilt_found
     assert off_by(found, SEAT * [1, 1, 0, 0], member)[0] < TENTH
@@ -132,7 +132,7 @@ def test_ordinary_file_gives_the_eccentricity_at_its_height_and_says_what_it_doe
 
 def test_one_place_of_a_flat_gear_is_refused_with_the_reason(clamped, gear_set):
     """The radial part of a gear's normals is small, so that a tilt there looks like much eccentricity."""
-    file = clamped(gear_set.gear, "gear", SEAT, around(gear_set.gear, 12), [22])
+    file = clamped(gear_set.gear, SEAT, around(gear_set.gear, 12), [22])
     with pytest.raises(InputError, match=r"10 um per 100 mm looks like 1\d\.\d um of eccentricity: measure three or"):
         register(file, gear_set.gear)
 
@@ -144,7 +144,7 @@ def test_with_noise_the_seat_is_within_its_standard_uncertainties(clamped, gear_
     within 1 ± 0.33, three standard deviations of it.
     """
     member = gear_set.gear
-    file = clamped(member, "gear", SEAT, around(member), FIVE, uneven(member), form)
+    file = clamped(member, SEAT, around(member), FIVE, uneven(member), form)
     ratios, noises = [], []
     for seed in range(50):
         noise = 0.5 * UM * np.random.default_rng(seed).standard_normal(len(file))
@@ -162,7 +162,7 @@ def test_with_noise_the_seat_is_within_its_standard_uncertainties(clamped, gear_
 def test_seat_and_what_is_taken_off_are_linear_in_the_deviations(clamped, gear_set):
     """The gain and the columns against registering again with other deviations: what covariances are carried by."""
     member = gear_set.gear
-    file = clamped(member, "gear", SEAT, around(member), FIVE, uneven(member), form)
+    file = clamped(member, SEAT, around(member), FIVE, uneven(member), form)
     change = 0.5 * UM * np.random.default_rng(1).standard_normal(len(file))
     other = replace(file, deviation=file.deviation + change, point=file.point + change[:, None] * file.normal)
     first, second = register(file, member), register(other, member)
@@ -230,7 +230,7 @@ def test_share_of_settings_is_none_where_their_sensitivities_are_not_known():
 
 def test_points_without_deviation_are_carried_along(clamped, gear_set):
     member = gear_set.pinion
-    file = clamped(member, "pinion", SEAT, around(member), FIVE)
+    file = clamped(member, SEAT, around(member), FIVE)
     silent = file.deviation.copy()
     silent[[3, 17]] = np.nan
     found = register(replace(file, deviation=silent), member)
@@ -334,7 +334,7 @@ def test_eccentricity_of_20_um_under_noise_is_taken_out_to_99_percent(gear_set):
 def test_no_seat_is_given_that_still_moves(clamped, monkeypatch):
     """Status 1 rather than figures of a clamping that was not found to the end."""
     member = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
-    file = clamped(member, "pinion", SEAT, around(member), FIVE)
+    file = clamped(member, SEAT, around(member), FIVE)
     monkeypatch.setattr(registration, "_ITERATIONS", 1)
     with pytest.raises(
         ComputationError, match="no clamping of the pinion explains its points: after 1 steps it moves on"

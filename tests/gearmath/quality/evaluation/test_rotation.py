@@ -32,7 +32,7 @@ def around(member):
 def test_pure_rotation_leaves_nothing_on_either_flank(clamped, gear_set, name, arcsec):
     """The witness's exact surface turned; at 10 minutes of arc the points lie 0.2 mm beside those of the grid."""
     member = gear_set.member(name)
-    file = clamped(member, name, teeth=[0], index=turned(member, arcsec * ARCSEC))
+    file = clamped(member, teeth=[0], index=turned(member, arcsec * ARCSEC))
     assert np.abs(file.deviation).min() > 1 * UM
     found = evaluate_member(file, member)
     assert np.abs(found.file.deviation).max() <= 0.01 * UM
@@ -47,7 +47,7 @@ def test_pure_rotation_leaves_nothing_on_either_flank(clamped, gear_set, name, a
 
 def test_pure_rotation_gives_no_correction_of_settings(clamped, gear_set):
     member = gear_set.pinion
-    file = clamped(member, "pinion", teeth=[0], index=turned(member, 30 * ARCSEC))
+    file = clamped(member, teeth=[0], index=turned(member, 30 * ARCSEC))
     settings = correct(member, evaluate_member(file, member).file).settings
     for flank in FLANKS:
         change = settings[flank] - member.flank(flank).vector[:12]
@@ -63,8 +63,8 @@ def test_rotation_and_clamping_are_found_side_by_side_and_thickness_and_pitch_st
         return 0.006 + (1e-4 if flank == "concave" else 2e-4) * (z - 77)
 
     given = {"teeth": range(12), "places": CORNERS, "whole": (0, 6), "form": thick}
-    file = clamped(member, "pinion", seat, index=turned(member, 30 * ARCSEC, uneven), **given)
-    still = clamped(member, "pinion", index=turned(member, 0.0, uneven), **given)
+    file = clamped(member, seat, index=turned(member, 30 * ARCSEC, uneven), **given)
+    still = clamped(member, index=turned(member, 0.0, uneven), **given)
     found = evaluate_member(file, member)
     wanted = evaluate_member(still, member, registered=False, rotated=False)
     # what the form itself would turn each flank by is in the rotation of both: by hand from the file at rest
@@ -126,8 +126,8 @@ def test_one_flank_alone_has_no_rotation_in_common(gear_set):
 def test_chart_is_zero_at_the_reference_point_and_keeps_the_form(clamped, gear_set):
     """A tooth too thick by 20 um and crowned: the chart shows the crowning, the figures of the flank keep all."""
     member = gear_set.pinion
-    z = clamped(member, "pinion", teeth=[0]).point[22, 2]
-    file = clamped(member, "pinion", teeth=[0], form=lambda flank, at, r: 0.02 - 1e-4 * (at - z) ** 2)
+    z = clamped(member, teeth=[0]).point[22, 2]
+    file = clamped(member, teeth=[0], form=lambda flank, at, r: 0.02 - 1e-4 * (at - z) ** 2)
     for flank in FLANKS:
         figures = evaluate_member(file, member, rotated=False).flanks[flank]
         assert figures.mean.at_reference == pytest.approx(0.02, abs=0.1 * UM)
