@@ -160,6 +160,6 @@ def _corrected(first: DemoPass, folder: Path) -> Path:
     """The set with the settings that make up for what was measured."""
     target = folder / f"{MEMBER}_corrected.toml"
     spec = load_pair(first.settings).member(MEMBER)
-    result = correct(spec, MEMBER, first.evaluated.file)
+    result = correct(spec, first.evaluated.file)
     save_corrected(first.settings, target, MEMBER, result.settings, result.index, check=check_corrected)
     return target

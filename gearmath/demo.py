@@ -153,7 +153,7 @@ def run_gearbox() -> tuple[list[tuple[int, float, int]], GearboxPlan, Simulation
 def compare_truths() -> tuple[float, int, int]:
     """Largest difference of CasADi to SymPy [mm], and of how many numbers the C is bit-equal to CasADi."""
     member = load_pair(bundled(GEAR_SET)).member("pinion")
-    points = solve_flank(member, "pinion", "concave", blank_grid(member))
+    points = solve_flank(member, "concave", blank_grid(member))
     settings, side = member.concave.vector, SIDES["concave"]
     arguments = (*points.contact.T, settings, side)
     lowered = np.hstack(kernel("flank_family")(*arguments))
@@ -206,7 +206,7 @@ def run_closed_loop(member: str, folder: Path, source: Path | None = None, prefi
     first, measured = _cut_and_measure(source, member, shop, folder / f"{name.upper()}_1.MPF")
     write_flank_csv(folder / f"{name}_measured.csv", measured)
     spec = load_pair(source).member(member)
-    correction = correct(spec, member, measured)
+    correction = correct(spec, measured)
     save_corrected(
         source,
         corrected,
@@ -231,7 +231,7 @@ def _cut_and_measure(gear_set: Path, name: str, shop: SimulatedMachine, program:
     member = bevel_set.member(name)
     write_text(program, cutting_program(bevel_set, name, machine, program.stem, CuttingJob(range(member.teeth))))
     path = execute(program.read_text("utf-8"), program.name, Setup.of(machine))
-    true = mill_member(path, member, name, machine, shop.model_copy(update={"probe": Probe()}))
+    true = mill_member(path, member, machine, shop.model_copy(update={"probe": Probe()}))
     return true, probed(true, name, shop)
 
 

@@ -41,7 +41,7 @@ def ease_off_target(member: str, flank: str, shape: str, sign: int) -> FlankTarg
     y, x = (index.ravel() * 2.0 / (n - 1) - 1 for index, n in zip(np.indices((5, 9)), (5, 9), strict=True))
     asked = SHAPES[shape](x, y)
     assert np.abs(asked).max() == 1.0
-    target = target_of(blank, flank, solve_flank(blank, member, flank, blank_grid(blank)))
+    target = target_of(blank, flank, solve_flank(blank, flank, blank_grid(blank)))
     return replace(target, deviation=sign * EASE_OFF * asked)
 
 

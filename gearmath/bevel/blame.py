@@ -203,11 +203,11 @@ def _moved(member: Member, flank: str, repair: Repair) -> float:
     return one.apart
 
 
-def most_changed(member: Member, name: str, flank: str) -> Suspect:
+def most_changed(member: Member, flank: str) -> Suspect:
     """The setting of a corrected flank that is farthest from its nominal value."""
     spec = member.flank(flank)
     nominal = {key: getattr(spec.nominal, key) for key in SETTINGS}
-    suspects = _suspects(member, f"{name}.{flank}", spec, nominal, "design")
+    suspects = _suspects(member, f"{member.name}.{flank}", spec, nominal, "design")
     return max(suspects, key=lambda suspect: suspect.apart)
 
 

@@ -20,16 +20,16 @@ _ROUND = 1.25
 _TOPREM_ANGLE, _TOPREM = 12.0, 2.5
 
 
-def check_blades(member: Member, name: str) -> None:
+def check_blades(member: Member) -> None:
     """Refuse blades that do not fit together. Raises InputError naming member, flank, key, value and limit."""
     for flank in FLANKS:
-        _check_method(member, f"{name}.{flank}", member.flank(flank))
-        _check_sections(f"{name}.{flank}", member.flank(flank), SIDES[flank])
-        _check_foot(f"{name}.{flank}", member.flank(flank), member.blank.clearance)
+        _check_method(member, f"{member.name}.{flank}", member.flank(flank))
+        _check_sections(f"{member.name}.{flank}", member.flank(flank), SIDES[flank])
+        _check_foot(f"{member.name}.{flank}", member.flank(flank), member.blank.clearance)
         if member.cutting == "fixed_setting":
-            _check_tip(f"{name}.{flank}", member.flank(flank), SIDES[flank])
+            _check_tip(f"{member.name}.{flank}", member.flank(flank), SIDES[flank])
     if member.cutting == "completing":
-        _check_point_width(member, name)
+        _check_point_width(member)
 
 
 def check_methods(pinion: Member, gear: Member) -> None:
@@ -42,7 +42,7 @@ def check_methods(pinion: Member, gear: Member) -> None:
             )
 
 
-def check_offset(member: Member, name: str, spiral: float) -> None:
+def check_offset(member: Member, spiral: float) -> None:
     """Refuse hobbing blades that do not stand square to their path (14.6) at a mean ``spiral`` angle [rad], signed.
 
     Raises InputError naming member, key, value and limit.
@@ -67,8 +67,8 @@ def check_offset(member: Member, name: str, spiral: float) -> None:
     for flank, spec in zip(FLANKS, flanks, strict=True):
         if not abs(spec.blade_offset_angle - math.degrees(square)) <= _SQUARE:
             raise InputError(
-                f"{name}.{flank}.blade_offset_angle = {spec.blade_offset_angle:g}: the blade must stand square to its "
-                f"path, {math.degrees(square):.4g} within {_SQUARE:g} degrees"
+                f"{member.name}.{flank}.blade_offset_angle = {spec.blade_offset_angle:g}: the blade must stand square "
+                f"to its path, {math.degrees(square):.4g} within {_SQUARE:g} degrees"
             )
 
 
@@ -154,7 +154,7 @@ def _check_foot(table: str, spec: Flank, clearance: float) -> None:
         )
 
 
-def _check_point_width(member: Member, name: str) -> None:
+def _check_point_width(member: Member) -> None:
     """Both blades of one cutter: between their tips there is some metal, and room for both edge radii."""
     outer, inner = member.concave, member.convex
     for key, which in (("", (outer, inner)), ("design.", (outer.nominal, inner.nominal))):
@@ -163,23 +163,25 @@ def _check_point_width(member: Member, name: str) -> None:
             continue  # of a hobbing cutter whose inner blades follow the outer ones: each has a tip of its own
         if not width > 0:
             raise InputError(
-                f"{name}.concave.{key}blade_point_radius = {which[0].blade_point_radius:g}: one cutter cuts both "
-                f"flanks, and its outer blade must lie outside of the inner one of {which[1].blade_point_radius:g} mm, "
-                f"which cuts the convex flank; the point width would be {width:.4g} mm"
+                f"{member.name}.concave.{key}blade_point_radius = {which[0].blade_point_radius:g}: one cutter cuts "
+                "both flanks, and its outer blade must lie outside of the inner one of "
+                f"{which[1].blade_point_radius:g} mm, which cuts the convex flank; the point width would be "
+                f"{width:.4g} mm"
             )
         flat = sum(tip_taken(spec, side) for spec, side in ((outer, 1), (inner, -1)))
         if flat > width:
             raise InputError(
-                f"{name}.concave.blade_edge_radius = {outer.blade_edge_radius:g}, convex {inner.blade_edge_radius:g}: "
-                f"the rounded edges take {flat:.3g} mm of the tip, the point width is {width:.4g} mm"
+                f"{member.name}.concave.blade_edge_radius = {outer.blade_edge_radius:g}, convex "
+                f"{inner.blade_edge_radius:g}: the rounded edges take {flat:.3g} mm of the tip, the point width is "
+                f"{width:.4g} mm"
             )
     for flank in FLANKS:
         stated = member.flank(flank).blade_point_width
         width = outer.blade_point_radius - inner.blade_point_radius
         if stated is not None and abs(stated - width) > 0.01 * width:
             raise InputError(
-                f"{name}.{flank}.blade_point_width = {stated:g}: the blade point radii of the two flanks make it "
-                f"{width:.4g} mm; leave it out where one cutter cuts both flanks"
+                f"{member.name}.{flank}.blade_point_width = {stated:g}: the blade point radii of the two flanks make "
+                f"it {width:.4g} mm; leave it out where one cutter cuts both flanks"
             )
 
 

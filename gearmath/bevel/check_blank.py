@@ -44,9 +44,9 @@ def working_depth(blank: Blank) -> float:
     return blank.mean_addendum + blank.mean_dedendum - blank.clearance
 
 
-def check_blank(member: Member, name: str) -> None:
+def check_blank(member: Member) -> None:
     """Refuse a blank that contradicts itself. Raises InputError naming member, key, value and limit."""
-    blank, table = member.blank, f"{name}.blank"
+    blank, table = member.blank, f"{member.name}.blank"
     narrowest, widest = (share * blank.mean_cone_distance / (1 - share / 2) for share in (NARROWEST_FACE, WIDEST_FACE))
     if not narrowest <= blank.face_width <= widest:
         raise InputError(
@@ -138,12 +138,12 @@ def check_cones(pinion: Member, gear: Member, shaft_angle: float) -> None:
             )
 
 
-def check_mate(member: Member, name: str, shaft_angle: float) -> None:
+def check_mate(member: Member, shaft_angle: float) -> None:
     """Refuse a member without its mate whose pitch cone rolls on that of no whole number of teeth (11.1).
 
     Raises InputError naming member, key, value and the nearest that would do.
     """
-    own, given = ("pinion", "gear").index(name), member.blank.pitch_angle
+    own, given = ("pinion", "gear").index(member.name), member.blank.pitch_angle
 
     def angle(mate: int) -> float:
         pair = (member.teeth, mate) if own == 0 else (mate, member.teeth)
@@ -156,7 +156,7 @@ def check_mate(member: Member, name: str, shaft_angle: float) -> None:
     nearest = min((low, high), key=lambda mate: abs(angle(mate) - given))
     if not abs(angle(nearest) - given) <= _PRINTED_ANGLE:
         raise InputError(
-            f"{name}.blank.pitch_angle = {given:g}: fits no mate, {member.teeth} teeth at shaft_angle = "
+            f"{member.name}.blank.pitch_angle = {given:g}: fits no mate, {member.teeth} teeth at shaft_angle = "
             f"{shaft_angle:g} and a mate of {nearest} need {angle(nearest):.5g} within {_PRINTED_ANGLE:g} degree"
         )
 

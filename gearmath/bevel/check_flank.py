@@ -50,7 +50,7 @@ class CutFlank:
     contact: np.ndarray
 
 
-def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected: bool = False) -> CutFlank:
+def cut_flank(member: Member, flank: str, how: Generation, corrected: bool = False) -> CutFlank:
     """The flank that is generated like this. Raises Misfit where it cannot be the flank that the blank describes.
 
     The root of ``corrected`` settings may lie farther from that of the blank.
@@ -59,40 +59,40 @@ def cut_flank(member: Member, name: str, flank: str, how: Generation, corrected:
     section = blade_sections(spec, SIDES[flank])["main"]
     mean = solve_section(how, section, *mean_place(member))
     if not mean.converged.all():
-        raise Misfit.of(name, flank, "the equation of meshing has no solution at the mean point")
+        raise Misfit.of(member.name, flank, "the equation of meshing has no solution at the mean point")
     delta = member.blank.delta
     found = (float(value[0]) for value in kernel("flank_angles")(delta, mean.point, mean.normal))
     pressure, spiral, across, azimuth = found
-    _check_angles(name, flank, pressure, spiral)
+    _check_angles(member.name, flank, pressure, spiral)
     swing = math.degrees(float(mean.contact[0, 2]))
     if not abs(swing) <= OFF_CENTER:
         raise Misfit.of(
-            name,
+            member.name,
             flank,
             f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
             f"be at most {OFF_CENTER:g}",
         )
-    root = _root(member, name, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else ROOT))
+    root = _root(member, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else ROOT))
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
     tips = solve_section(how, section, axial, radial)
-    _check_tips(name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
+    _check_tips(member.name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
     tip_azimuth = np.arctan2(tips.point[:, 1], tips.point[:, 0])
-    _check_hand(member, name, flank, spiral, tip_azimuth)
+    _check_hand(member, flank, spiral, tip_azimuth)
     return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth, root, mean.contact)
 
 
-def check_grid(member: Member, name: str, flank: str) -> None:
+def check_grid(member: Member, flank: str) -> None:
     """Refuse a flank that is not there on the whole of the standard grid. Raises Misfit."""
     grid = blank_grid(member)
     try:
-        points = solve_flank(member, name, flank, grid)
+        points = solve_flank(member, flank, grid)
     except InputError as error:
-        raise Misfit.of(name, flank, str(error).removeprefix(f"{name} {flank} flank, ")) from error
+        raise Misfit.of(member.name, flank, str(error).removeprefix(f"{member.name} {flank} flank, ")) from error
     if generation_of(member, flank).motion.any():
-        _check_motion(member, name, flank, grid, points)
+        _check_motion(member, flank, grid, points)
 
 
-def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: FlankPoints) -> None:
+def _check_motion(member: Member, flank: str, grid: Grid, points: FlankPoints) -> None:
     """A motion changes the form of the flank that the settings cut at rest, and not what flank it is."""
     how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
     resting = replace(how, motion=np.zeros_like(how.motion))
@@ -105,8 +105,8 @@ def _check_motion(member: Member, name: str, flank: str, grid: Grid, points: Fla
     limit = _MOTION * transverse_module(member)
     if not np.ptp(change) <= limit:
         raise InputError(
-            f"{name}.{flank}.motion: it changes the form of the flank by {np.ptp(change):.3g} mm from end to end "
-            f"against settings at rest, which must be at most {limit:.3g} mm, {_MOTION:g} of the module"
+            f"{member.name}.{flank}.motion: it changes the form of the flank by {np.ptp(change):.3g} mm from end to "
+            f"end against settings at rest, which must be at most {limit:.3g} mm, {_MOTION:g} of the module"
         )
 
 
@@ -128,7 +128,7 @@ def _check_angles(name: str, flank: str, pressure: float, spiral: float) -> None
         )
 
 
-def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimuth: np.ndarray) -> None:
+def _check_hand(member: Member, flank: str, spiral: float, tip_azimuth: np.ndarray) -> None:
     """The trace of a right-hand member turns towards larger angles from toe to heel, that of a Zerol at the heel."""
     hand = 1 if member.hand == "right" else -1
     told = spiral
@@ -138,32 +138,32 @@ def _check_hand(member: Member, name: str, flank: str, spiral: float, tip_azimut
         return
     other = "left" if hand == 1 else "right"
     raise Misfit.of(
-        name,
+        member.name,
         flank,
         f"hand = {member.hand!r} is stated, but its spiral angle at the mean point is {math.degrees(spiral):+.4g} "
         f"degrees, which is {other} hand",
     )
 
 
-def _root(member: Member, name: str, flank: str, how: Generation, mean: np.ndarray, share: np.ndarray) -> np.ndarray:
+def _root(member: Member, flank: str, how: Generation, mean: np.ndarray, share: np.ndarray) -> np.ndarray:
     """Points (13,3) that the tip of the blade leaves: they have to lie on the root of the blank, to a ``share`` (3,) of
     the clearance at toe, mean point and heel. NaN beyond the ends where there is none."""
     clearance, found = member.blank.clearance, root_trace(member, flank, how, mean)
     reached = found.converged[ENDS[0] : ENDS[-1] + 1]
     if not reached.all():
         k = round(int(np.argmax(~reached)) / (len(reached) - 1) * (len(PLACES) - 1))
-        raise Misfit.of(name, flank, f"the tip of the blade does not reach the root at the {PLACES[k]}")
+        raise Misfit.of(member.name, flank, f"the tip of the blade does not reach the root at the {PLACES[k]}")
     # the tip plane of a tilted cutter leans across the space: it lies on the root in the middle
     middle = found
     if member.cutting == "completing" and member.flank(flank).nominal.cutter_tilt:
-        half = space_widths(member, name)[0].mean / 2
+        half = space_widths(member)[0].mean / 2
         middle = root_trace(member, flank, how, mean, half)
     off = above_root(member, middle.point)[list(ENDS)]
     beyond = ~(np.abs(off) <= share * clearance)
     if beyond.any():
         k = int(np.argmax(np.abs(off) / share))
         raise Misfit.of(
-            name,
+            member.name,
             flank,
             f"the tip of the blade leaves the root {abs(off[k]):.3g} mm {'above' if off[k] > 0 else 'below'} that of "
             f"the blank at the {PLACES[k]}, which must be at most {share[k] * clearance:.3g} mm, "

@@ -18,7 +18,7 @@ _IN_MESH = 3
 _LEAST = 0.02
 
 
-def check_index(member: Member, name: str, backlash: float | None) -> None:
+def check_index(member: Member, backlash: float | None) -> None:
     """Refuse index corrections that move spaces apart by more than the backlash [mm] of the pair, transverse.
 
     Teeth of the mate that are in mesh at once stand evenly. They enter spaces that are wider by the backlash alone, so
@@ -40,7 +40,7 @@ def check_index(member: Member, name: str, backlash: float | None) -> None:
     if backlash is not None and limit > backlash:
         what = f"{_LEAST:g} of the module, as the pair has a backlash of {backlash:.3g} mm"
     raise InputError(
-        f"{name}.index_correction: the spaces {first} to {last} stand up to {apart[first]:.3g} mm apart from where "
-        f"even teeth enter them ({math.degrees(apart[first] / mean_pitch_radius(member)):.3g} degrees), the limit is "
-        f"{limit:.3g} mm, {what}: the mate would clamp"
+        f"{member.name}.index_correction: the spaces {first} to {last} stand up to {apart[first]:.3g} mm apart from "
+        f"where even teeth enter them ({math.degrees(apart[first] / mean_pitch_radius(member)):.3g} degrees), the "
+        f"limit is {limit:.3g} mm, {what}: the mate would clamp"
     )

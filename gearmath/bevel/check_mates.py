@@ -38,20 +38,22 @@ _ROUNDED = 1e-6
 CutFlanks = dict[str, CutFlank]
 
 
-def check_space(member: Member, name: str, cut: CutFlanks) -> float:
+def check_space(member: Member, cut: CutFlanks) -> float:
     """The transverse width [mm] of space 0 at the mean point.
 
     Raises InputError where concave and convex flank bound no space, or leave no tooth between two spaces.
     """
     concave, convex = (cut[flank] for flank in FLANKS)
     if concave.across == convex.across:
-        raise InputError(f"{name}: the outward normals of both flanks point the same way around the axis: no space")
+        raise InputError(
+            f"{member.name}: the outward normals of both flanks point the same way around the axis: no space"
+        )
     spirals = [math.degrees(flank.spiral_angle) for flank in (concave, convex)]
     if abs(spirals[0] - spirals[1]) > _TAPER:
         raise Misfit(
-            f"{name} concave flank: spiral angle {spirals[0]:+.4g} degrees at the mean point, the convex flank has "
-            f"{spirals[1]:+.4g}; they must agree within {_TAPER:g}",
-            *((name, flank) for flank in FLANKS),
+            f"{member.name} concave flank: spiral angle {spirals[0]:+.4g} degrees at the mean point, the convex flank "
+            f"has {spirals[1]:+.4g}; they must agree within {_TAPER:g}",
+            *((member.name, flank) for flank in FLANKS),
         )
     radius, pitch = mean_pitch_radius(member), 2 * math.pi / member.teeth
     # from the concave flank across the space: less than nothing is a tooth, more than a pitch a tooth and two spaces
@@ -62,17 +64,19 @@ def check_space(member: Member, name: str, cut: CutFlanks) -> float:
     least = _LEAST_WIDTH * module
     if not (space >= least and tooth >= least):
         raise InputError(
-            f"{name}: {_phase(member)} leave a space of {space:.4g} mm and a tooth of {tooth:.4g} mm (normal, at the "
-            f"mean point), each must be at least {least:.3g} mm{_hint(member, turn, pitch, least / radius / cosine)}"
+            f"{member.name}: {_phase(member)} leave a space of {space:.4g} mm and a tooth of {tooth:.4g} mm (normal, "
+            f"at the mean point), each must be at least {least:.3g} "
+            f"mm{_hint(member, turn, pitch, least / radius / cosine)}"
         )
     depth = working_depth(member.blank)
     if not _DEPTH[0] * module <= depth <= _DEPTH[1] * module:
         raise InputError(
-            f"{name}.blank.mean_addendum = {member.blank.mean_addendum:g}: the working depth of {depth:.4g} mm must "
-            f"lie between {_DEPTH[0] * module:.4g} and {_DEPTH[1] * module:.4g} mm: mean normal module {module:.4g}"
+            f"{member.name}.blank.mean_addendum = {member.blank.mean_addendum:g}: the working depth of {depth:.4g} mm "
+            f"must lie between {_DEPTH[0] * module:.4g} and {_DEPTH[1] * module:.4g} mm: mean normal module "
+            f"{module:.4g}"
         )
-    _check_top_land(member, name, concave, convex, pitch)
-    _check_root(member, name, concave, convex)
+    _check_top_land(member, concave, convex, pitch)
+    _check_root(member, concave, convex)
     return radius * turn
 
 
@@ -93,19 +97,19 @@ def _hint(member: Member, turn: float, pitch: float, least: float) -> str:
     )
 
 
-def _check_top_land(member: Member, name: str, concave: CutFlank, convex: CutFlank, pitch: float) -> None:
+def _check_top_land(member: Member, concave: CutFlank, convex: CutFlank, pitch: float) -> None:
     turns = concave.across * (convex.tip_azimuth - concave.tip_azimuth)
     land = pitch - half_turn(turns)
     if not (land > 0).all():
         k = int(np.argmin(land))
         raise InputError(
-            f"{name}: {_phase(member)}, blank.mean_addendum = {member.blank.mean_addendum:g}, blank.face_angle = "
-            f"{member.blank.face_angle:g}: the teeth are pointed at the {PLACES[k]}: a top land of "
+            f"{member.name}: {_phase(member)}, blank.mean_addendum = {member.blank.mean_addendum:g}, blank.face_angle "
+            f"= {member.blank.face_angle:g}: the teeth are pointed at the {PLACES[k]}: a top land of "
             f"{math.degrees(land[k]):.3g} degrees about the axis is left, which must be above 0"
         )
 
 
-def _check_root(member: Member, name: str, concave: CutFlank, convex: CutFlank) -> None:
+def _check_root(member: Member, concave: CutFlank, convex: CutFlank) -> None:
     """The space is open down to its root, and wide enough there for a cutter of a stated point width."""
     azimuth = [np.arctan2(flank.root[:, 1], flank.root[:, 0])[list(ENDS)] for flank in (concave, convex)]
     turn = half_turn(concave.across * (azimuth[1] - azimuth[0]))
@@ -113,8 +117,8 @@ def _check_root(member: Member, name: str, concave: CutFlank, convex: CutFlank) 
     if not turn[k] > 0:
         crossed = float(np.hypot(*concave.root[ENDS[k], :2]) * turn[k])
         raise InputError(
-            f"{name}: {_phase(member)}: the flanks cross above the root at the {PLACES[k]}: a root of {crossed:.3g} "
-            "mm is left between them, which must be above 0"
+            f"{member.name}: {_phase(member)}: the flanks cross above the root at the {PLACES[k]}: a root of "
+            f"{crossed:.3g} mm is left between them, which must be above 0"
         )
     if member.cutting == "completing":
         return  # the blades of one cutter leave the root, and have their own check
@@ -127,14 +131,14 @@ def _check_root(member: Member, name: str, concave: CutFlank, convex: CutFlank) 
     flank = max(FLANKS, key=lambda one: taken[one])
     if sum(taken.values()) > slots[flank].least:
         raise InputError(
-            f"{name}.{flank}.blade_edge_radius = {member.flank(flank).blade_edge_radius:g}: the rounded edges of both "
-            f"flanks take {sum(taken.values()):.3g} mm of the slot, which is {slots[flank].least:.3g} mm wide at the "
-            f"{slots[flank].narrow_place}"
+            f"{member.name}.{flank}.blade_edge_radius = {member.flank(flank).blade_edge_radius:g}: the rounded edges "
+            f"of both flanks take {sum(taken.values()):.3g} mm of the slot, which is {slots[flank].least:.3g} mm wide "
+            f"at the {slots[flank].narrow_place}"
         )
-    _check_cutters(member, name, slots)
+    _check_cutters(member, slots)
 
 
-def _check_cutters(member: Member, name: str, slots: dict[str, Widths]) -> None:
+def _check_cutters(member: Member, slots: dict[str, Widths]) -> None:
     """Cutters for one flank pass through the slot, and leave no fin between them."""
     stated = {flank: member.flank(flank).blade_point_width for flank in FLANKS}
     for flank, own in stated.items():
@@ -143,14 +147,14 @@ def _check_cutters(member: Member, name: str, slots: dict[str, Widths]) -> None:
         slot, other = slots[flank], stated[FLANKS[1 - FLANKS.index(flank)]]
         if own > slot.least:
             raise InputError(
-                f"{name}.{flank}.blade_point_width = {own:g}: the slot is {slot.least:.3g} mm wide at the "
+                f"{member.name}.{flank}.blade_point_width = {own:g}: the slot is {slot.least:.3g} mm wide at the "
                 f"{slot.narrow_place}, the cutter must be no wider"
             )
         if own < slot.most - (slot.least if other is None else other):
             beside = f"at most {slot.least:.3g}" if other is None else f"{other:g}"
             raise InputError(
-                f"{name}.{flank}.blade_point_width = {own:g}: with {beside} mm of the cutter of the other flank a fin "
-                f"would stay between both cuts, as the slot is {slot.most:.3g} mm wide at the {slot.wide_place}, "
+                f"{member.name}.{flank}.blade_point_width = {own:g}: with {beside} mm of the cutter of the other flank "
+                f"a fin would stay between both cuts, as the slot is {slot.most:.3g} mm wide at the {slot.wide_place}, "
                 "which both together must be at least"
             )
 
@@ -171,12 +175,12 @@ def _mating_angles(cut: dict[str, CutFlanks], key: str) -> str:
     return f"{key.replace('_', ' ')} at the mean point {', '.join(pairs)}"
 
 
-def _given_by_one_cut(member: Member, cut: dict[str, CutFlanks], name: str) -> float:
+def _given_by_one_cut(member: Member, cut: dict[str, CutFlanks]) -> float:
     """What a cut of both flanks at once gives to the spiral angles [degree] of its flanks oppositely, by its point
     width: half of what that of the concave flank is larger by."""
     if member.cutting != "completing":
         return 0.0
-    concave, convex = (_seen(cut, name, flank, "spiral_angle") for flank in FLANKS)
+    concave, convex = (_seen(cut, member.name, flank, "spiral_angle") for flank in FLANKS)
     return (concave - convex) / 2
 
 
@@ -225,7 +229,7 @@ def check_mates(
         )
     first, second = _apart(cut, "spiral_angle")
     common, opposite = (first + second) / 2, (first - second) / 2
-    given = sum(_given_by_one_cut(member, cut, name) for name, member in members.items())
+    given = sum(_given_by_one_cut(member, cut) for name, member in members.items())
     for found, low, high, what in (
         (common, *_between(0.0, share * _SPIRAL[0]), "on both"),
         (opposite, *_between(given, share * _SPIRAL[1]), "on the first and by as much the other way on the second"),

@@ -20,10 +20,10 @@ _STILL_ROLL = 0.03
 _SWING, _CARRIED, _CARRIED_ANGLE = math.radians(20), 0.1, 5.0
 
 
-def check_motions(member: Member, name: str) -> None:
+def check_motions(member: Member) -> None:
     """Refuse motions that cannot be meant. Raises InputError naming member, flank, key, value and limit."""
     for flank in FLANKS:
-        spec, table = member.flank(flank), f"{name}.{flank}"
+        spec, table = member.flank(flank), f"{member.name}.{flank}"
         if member.generation == "formate":
             _check_still(spec, table)
             _check_still_roll(member, spec, table)

@@ -239,4 +239,4 @@ def with_motion(member: Member, **motion: tuple[float, ...]) -> Member:
     values = member.model_dump()
     for flank in FLANKS:
         values[flank]["motion"] = motion
-    return checked(values, Member, f"motion of a member of {member.teeth} teeth")
+    return checked(values, Member, f"motion of a member of {member.teeth} teeth").named(member.name)

@@ -144,7 +144,7 @@ def _points(how: Generation, section: Section, grid: Grid) -> tuple[FlankPoints,
     return points, points.residual
 
 
-def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoints:
+def solve_flank(member: Member, flank: str, grid: Grid) -> FlankPoints:
     """The points of a grid on one flank, row by row.
 
     Raises InputError naming member, flank, row and column of the first point that does not converge, that is
@@ -171,7 +171,7 @@ def solve_flank(member: Member, name: str, flank: str, grid: Grid) -> FlankPoint
             if not points.converged[k] and _folds_above(how, section, points, grid, k, member.blank.delta):
                 what = _UNDERCUT
             raise InputError(
-                f"{name} {flank} flank, row {row}, column {column}: {what} "
+                f"{member.name} {flank} flank, row {row}, column {column}: {what} "
                 f"(u = {u[k]:.4f} {unit}, the main section runs from {section.lower:g} to {section.upper:g} {unit})"
             )
     return points

@@ -37,7 +37,7 @@ def pair_figures(pair: BevelSet, found: dict[str, Parts] | None) -> dict[str, An
     if pair.pinion is None or pair.gear is None or found is None:
         return None
     cut = {
-        name: {flank: cut_flank(member, name, flank, generation_of(member, flank)) for flank in FLANKS}
+        name: {flank: cut_flank(member, flank, generation_of(member, flank)) for flank in FLANKS}
         for name, member in pair.members.items()
     }
     transverse = mean_backlash(pair.pinion, pair.gear)

@@ -44,7 +44,7 @@ def cut_generation_of(member: Member, flank: str) -> Generation:
     return replace(generation_of(member, flank), settings=spec.vector, motion=motion_of(spec))
 
 
-def require_plain(member: Member, name: str, what: str) -> None:
+def require_plain(member: Member, what: str) -> None:
     """Refuse what so far only knows face milling: a generated flank, settings at rest, a straight blade.
 
     Raises InputError naming the member, what it was asked for, and what stands against it.
@@ -60,7 +60,9 @@ def require_plain(member: Member, name: str, what: str) -> None:
         if is_so
     ]
     if against:
-        raise InputError(f"{name}: {what} is there for plain face milling only; this member is {' and '.join(against)}")
+        raise InputError(
+            f"{member.name}: {what} is there for plain face milling only; this member is {' and '.join(against)}"
+        )
 
 
 def blade_sections(spec: Flank, side: int) -> dict[str, Section]:

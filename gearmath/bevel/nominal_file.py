@@ -15,13 +15,11 @@ from gearmath.specs.margins import OWN, Margins
 MARGIN = 0.1
 
 
-def flank_header(
-    member: Member, name: str, shape: tuple[int, int], margin: float | Margins | None = MARGIN
-) -> dict[str, str]:
+def flank_header(member: Member, shape: tuple[int, int], margin: float | Margins | None = MARGIN) -> dict[str, str]:
     """The header of a flank file of a member and of a grid of this shape; without margins it has own places."""
     rows, columns = shape
     return {
-        "member": name,
+        "member": member.name,
         "member_teeth": str(member.teeth),
         "frame": "w",
         "unit": "mm",
@@ -35,11 +33,13 @@ def flank_header(
 
 
 def nominal_flank(
-    member: Member, name: str, flank: str, grid: Grid, margin: float | Margins | None = MARGIN, tooth: int = 0
+    member: Member, flank: str, grid: Grid, margin: float | Margins | None = MARGIN, tooth: int = 0
 ) -> FlankFile:
     """The nominal points of one flank of one tooth as a flank file."""
-    points = solve_flank(member, name, flank, grid)
+    points = solve_flank(member, flank, grid)
     row, col = (index.ravel() for index in np.indices(grid.shape))
     angle = 2 * math.pi * tooth / member.teeth
-    header = flank_header(member, name, grid.shape, margin)
-    return flank_file(header, name, flank, tooth, row, col, turned(points.point, angle), turned(points.normal, angle))
+    header = flank_header(member, grid.shape, margin)
+    return flank_file(
+        header, member.name, flank, tooth, row, col, turned(points.point, angle), turned(points.normal, angle)
+    )

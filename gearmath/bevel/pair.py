@@ -132,16 +132,16 @@ def _check(members: dict[str, Member], shaft_angle: float, cut: dict[str, CutFla
     if pinion is not None and gear is not None:
         check_cones(pinion, gear, shaft_angle)
     else:
-        for name, member in members.items():
-            check_mate(member, name, shaft_angle)
-    for name, member in members.items():
-        check_blank(member, name)
+        for member in members.values():
+            check_mate(member, shaft_angle)
+    for member in members.values():
+        check_blank(member)
     if pinion is not None and gear is not None:
         check_blanks(pinion, gear, shaft_angle)
         check_methods(pinion, gear)
-    for name, member in members.items():
-        check_blades(member, name)
-        check_motions(member, name)
+    for member in members.values():
+        check_blades(member)
+        check_motions(member)
     _check_cut(members, cut, share)
     if pinion is not None and gear is not None:
         check_ease_off(pinion, gear, math.radians(shaft_angle), share)
@@ -152,43 +152,43 @@ def _check_cut(members: dict[str, Member], cut: dict[str, CutFlanks], share: flo
     spaces: dict[str, float] = {}
     for name, member in members.items():
         for flank in FLANKS:
-            cut[name][flank] = cut_flank(member, name, flank, generation_of(member, flank))
-        spaces[name] = check_space(member, name, cut[name])
-        check_offset(member, name, sum(found.spiral_angle for found in cut[name].values()) / len(FLANKS))
+            cut[name][flank] = cut_flank(member, flank, generation_of(member, flank))
+        spaces[name] = check_space(member, cut[name])
+        check_offset(member, sum(found.spiral_angle for found in cut[name].values()) / len(FLANKS))
     if len(members) == len(MEMBERS):
         check_mates(members, cut, spaces, share)
     gear = members.get("gear")
     pitch = 2 * math.pi * mean_pitch_radius(gear) / gear.teeth if gear is not None else math.nan
     backlash = sum(spaces.values()) - pitch if len(members) == len(MEMBERS) else None
-    for name, member in members.items():
-        check_index(member, name, backlash)
+    for member in members.values():
+        check_index(member, backlash)
     for name, member in members.items():
         for flank in FLANKS:
-            check_grid(member, name, flank)
+            check_grid(member, flank)
             if member.flank(flank).design is not None:
-                _check_corrected(member, name, flank, cut[name][flank])
+                _check_corrected(member, flank, cut[name][flank])
 
 
-def _check_corrected(member: Member, name: str, flank: str, nominal: CutFlank) -> None:
+def _check_corrected(member: Member, flank: str, nominal: CutFlank) -> None:
     """Corrected settings cut the nominal flank but for what a correction may need."""
     spec = member.flank(flank).model_copy(update={"design": None})
     corrected = member.model_copy(update={flank: spec})
     try:
-        found = cut_flank(corrected, name, flank, cut_generation_of(member, flank), True)
-        _check_change(member, name, flank, nominal, found)
+        found = cut_flank(corrected, flank, cut_generation_of(member, flank), True)
+        _check_change(member, flank, nominal, found)
     except Misfit as misfit:
         from gearmath.bevel.blame import most_changed
 
-        raise InputError(f"{misfit}; the setting changed most is {most_changed(member, name, flank)}") from misfit
+        raise InputError(f"{misfit}; the setting changed most is {most_changed(member, flank)}") from misfit
 
 
-def _check_change(member: Member, name: str, flank: str, nominal: CutFlank, found: CutFlank) -> None:
+def _check_change(member: Member, flank: str, nominal: CutFlank, found: CutFlank) -> None:
     """How far a corrected flank is off the nominal one at the mean point. Raises Misfit."""
     for what in ("pressure_angle", "spiral_angle"):
         change = math.degrees(getattr(found, what) - getattr(nominal, what))
         if not abs(change) <= _CORRECTED_ANGLE:
             raise Misfit.of(
-                name,
+                member.name,
                 flank,
                 f"the corrected settings change its {what.replace('_', ' ')} by {change:.3g} degrees against those "
                 f"under design, which must be at most {_CORRECTED_ANGLE:g}",
@@ -197,7 +197,7 @@ def _check_change(member: Member, name: str, flank: str, nominal: CutFlank, foun
     limit = _CORRECTED_ARC * transverse_module(member)
     if not abs(arc) <= limit:
         raise Misfit.of(
-            name,
+            member.name,
             flank,
             f"the corrected settings move it by {arc:.3g} mm at the mean point against those under design, which must "
             f"be at most {limit:.3g} mm",

@@ -89,7 +89,7 @@ def ridge_of_tips(member: Member) -> float:
     """The same of a face hobbed member: between what the ends of outer and inner tips leave."""
     nominal = {flank: member.flank(flank).model_copy(update={"design": None}) for flank in FLANKS}
     as_cut = member.model_copy(update={flank: sharp_edged(spec) for flank, spec in nominal.items()})
-    lengths = tip_lengths(as_cut, "member")
+    lengths = tip_lengths(as_cut)
     return _highest({flank: corner_wall(as_cut, flank, lengths[flank]) for flank in FLANKS})
 
 

@@ -43,11 +43,11 @@ _OVERLAP, _FREE = 0.03, 0.02
 
 
 @lru_cache(maxsize=64)
-def tip_lengths(member: Member, name: str) -> dict[str, float]:
+def tip_lengths(member: Member) -> dict[str, float]:
     """Lengths [mm] of the tips from the corners of their blades, by flank: beyond the middle of the widest slot, where
     the fillet of the other blade leaves room for it; where one has none, the other takes over as much as it may."""
-    _, slots = space_widths(member, name)
-    most = {flank: (1 - _FREE) * tip_room(member, name, flank)[0] for flank in FLANKS}
+    _, slots = space_widths(member)
+    most = {flank: (1 - _FREE) * tip_room(member, flank)[0] for flank in FLANKS}
     lengths = {}
     for flank, other in zip(FLANKS, reversed(FLANKS), strict=True):
         half = (0.5 + _OVERLAP) * slots[flank].most
@@ -56,19 +56,19 @@ def tip_lengths(member: Member, name: str) -> dict[str, float]:
 
 
 @lru_cache(maxsize=64)
-def tip_room(member: Member, name: str, flank: str) -> tuple[float, int]:
+def tip_room(member: Member, flank: str) -> tuple[float, int]:
     """The greatest length [mm] with which the tip of a blade stays off the surface that the other one cuts, and the
     place of 0 (toe) to 8 (heel) at which it would touch it first."""
     other = FLANKS[1 - FLANKS.index(flank)]
     inside = slice(ENDS[0], ENDS[-1] + 1)
-    surface = flank_surface(member, name, other, ENDS[-1] - ENDS[0] + 1, _ROWS)
+    surface = flank_surface(member, other, ENDS[-1] - ENDS[0] + 1, _ROWS)
     point = np.concatenate([surface.point, surface.point[-1:] - _BELOW * surface.normal[-1:]])
     beside = np.arctan2(point[..., 1], point[..., 0])
     around, (along, up) = np.hypot(point[..., 0], point[..., 1]), cone_distances(member.blank)[0]
     height = along * around - up * point[..., 2] - root_height(member.blank)[inside]
     own = corner_wall(member, flank, 0.0)[0][0, inside]
     sense = np.sign(half_turn(beside[-2] - own))
-    low, high, first = 0.0, _MOST * space_widths(member, name)[1][flank].most, 0
+    low, high, first = 0.0, _MOST * space_widths(member)[1][flank].most, 0
     for _ in range(_HALVED):
         middle = (low + high) / 2
         gaps = _gaps(member, flank, middle, sense * beside, height, sense)

@@ -96,18 +96,18 @@ class ToothSpace(Shown):
 
 @lru_cache(maxsize=16)
 def tooth_space(
-    member: Member, name: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
+    member: Member, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
 ) -> ToothSpace:
     """Space 0 of a member, whatever the method that cuts it; ``rows`` by part of the blade.
 
     Raises InputError naming member, flank, section, row and column of the first point without a solution.
     """
-    surfaces = [flank_surface(member, name, flank, columns, rows) for flank in FLANKS]
-    root, slots = space_widths(member, name)
+    surfaces = [flank_surface(member, flank, columns, rows) for flank in FLANKS]
+    root, slots = space_widths(member)
     return ToothSpace(surfaces[0], surfaces[1], 2 * math.pi / member.teeth, root, slots)
 
 
-def space_widths(member: Member, name: str) -> tuple[Widths, dict[str, Widths]]:
+def space_widths(member: Member) -> tuple[Widths, dict[str, Widths]]:
     """Widths of the root of space 0, and slot widths by flank. Raises InputError naming member and flank."""
     hows = {flank: generation_of(member, flank) for flank in FLANKS}
     starts, traces = {}, {}
@@ -116,7 +116,9 @@ def space_widths(member: Member, name: str) -> tuple[Widths, dict[str, Widths]]:
         starts[flank] = solve_section(how, section, *mean_place(member)).contact
         found = root_trace(member, flank, how, starts[flank])
         if not found.converged[ENDS[0] : ENDS[-1] + 1].all():
-            raise InputError(f"{name} {flank} flank: the tip of the blade does not reach the root from toe to heel")
+            raise InputError(
+                f"{member.name} {flank} flank: the tip of the blade does not reach the root from toe to heel"
+            )
         traces[flank] = np.where(found.converged[:, None], found.point, np.nan)
     slots = {}
     for flank, mate in zip(FLANKS, reversed(FLANKS), strict=True):
@@ -125,7 +127,7 @@ def space_widths(member: Member, name: str) -> tuple[Widths, dict[str, Widths]]:
 
 
 def flank_surface(
-    member: Member, name: str, flank: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
+    member: Member, flank: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
 ) -> SpaceFlank:
     """One flank of space 0 from the face cone to the bottom of its fillet."""
     spec = member.flank(flank)
@@ -138,7 +140,7 @@ def flank_surface(
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.ones(columns))
     distance = axial * direction[0] + radial * direction[1]
     tip = solve_section(how, sections["main"], axial, radial)
-    _check(tip, name, flank, "main", 1, columns)
+    _check(tip, member.name, flank, "main", 1, columns)
     start, top = tip.contact, tip.contact[:, 0]
     points: list[SurfacePoints] = []
     names: list[str] = []
@@ -151,7 +153,7 @@ def flank_surface(
             if part == "edge" and section.arc is not None:
                 start = np.column_stack([u, start[:, 1:]])
             row = solve_curve(how, section, u, direction, distance, np.column_stack([u, start[:, 1:]]))
-            _check(row, name, flank, part, len(points), columns)
+            _check(row, member.name, flank, part, len(points), columns)
             points.append(row)
             names.append(part)
             start = row.contact

@@ -28,7 +28,7 @@ def runs_dfq(runs: Sequence[EvaluatedRun], grade: int | None = None) -> bytes:
     first, member = runs[0], runs[0].member
     limits: dict[str, float] = {}
     if grade is not None:
-        data = gear_data(member, first.name)
+        data = gear_data(member)
         limits = iso17485(data.mean_normal_module, data.tolerance_diameter, grade).rounded
     figures = side_by_side(runs)
     characteristics = [

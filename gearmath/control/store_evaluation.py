@@ -73,9 +73,9 @@ def evaluate_run(run: StoredRun, progress: Callable[[int], object] = lambda _: N
         name = touches.member
         member = pair.member(name)
         # as it is written: what is kept is what was evaluated
-        write_flank_csv(folder / MEASURED, measured_member(touches, member, name, *at))
+        write_flank_csv(folder / MEASURED, measured_member(touches, member, *at))
         measured = read_flank_csv(folder / MEASURED)
-        found = evaluate_member(measured, member, name, progress=progress)
+        found = evaluate_member(measured, member, progress=progress)
     return EvaluatedRun(run, pair, name, measured, found)
 
 

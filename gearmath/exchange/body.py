@@ -21,12 +21,12 @@ _ACROSS, COLUMNS = 7, 21
 ROWS = {"main": 11, "toprem": 9, "edge": 17}
 
 
-def member_patches(member: Member, name: str) -> list[Patch]:
+def member_patches(member: Member) -> list[Patch]:
     """The patches of a whole member, in its work frame; their normals need not point one way.
 
     Raises InputError naming member, flank and place where the cutter makes no tooth.
     """
-    space = tooth_space(member, name, COLUMNS, tuple(ROWS.items()))
+    space = tooth_space(member, COLUMNS, tuple(ROWS.items()))
     grids = space_grids(space)
     patches = []
     for tooth in range(member.teeth):

@@ -60,7 +60,7 @@ def poses(pair: BevelSet, side: str = "drive", rotation: float = 0.0) -> dict[st
 def pair_patches(pair: BevelSet, side: str = "drive") -> list[tuple[str, list[Patch]]]:
     """Both members in mesh as closed surfaces of patches, by name."""
     return [
-        (name, [patch.moved(pose.matrix, pose.shift) for patch in member_patches(pair.member(name), name)])
+        (name, [patch.moved(pose.matrix, pose.shift) for patch in member_patches(pair.member(name))])
         for name, pose in poses(pair, side).items()
     ]
 
@@ -70,7 +70,7 @@ def pair_triangles(pair: BevelSet, side: str = "drive") -> np.ndarray:
     members = {name: pair.member(name) for name in MEMBERS}
     return np.concatenate(
         [
-            pose.of(member_triangles(members[name], tooth_space(members[name], name)))
+            pose.of(member_triangles(members[name], tooth_space(members[name])))
             for name, pose in poses(pair, side).items()
         ]
     )

@@ -90,7 +90,9 @@ def _numbers(values: Iterable[float]) -> str:
 
 def _values(form: _Form) -> Iterator[str]:
     plan, machine, positions = form.plan, form.plan.machine, form.positions
-    yield f"# gearmath {__version__}: {plan.name} on {machine.name}; mm, rad, s".encode("ascii", "replace").decode()
+    yield f"# gearmath {__version__}: {plan.member.name} on {machine.name}; mm, rad, s".encode(
+        "ascii", "replace"
+    ).decode()
     yield f"decimals {positions.mm} {positions.degrees}"
     yield f"modulo {int(positions.modulo)} {int(positions.turning_cutter)}"
     yield f"length {_numbers([positions.length])}"
@@ -108,7 +110,7 @@ def _values(form: _Form) -> Iterator[str]:
 def _rolls(plan: CuttingPlan) -> list[tuple[Cut, str, float, Pass]]:
     """Every path of a cutter: its cut, name of the stage, stock, and a pass along it."""
     found = []
-    for cut in Cut.of(plan.member, plan.name):
+    for cut in Cut.of(plan.member):
         for k, (stage, stock, _) in enumerate(plan.job.stages):
             passes = [one for one in plan.passes if one.tool == cut.tool]
             found.append((cut, stage, stock, passes[k * _passes_of_a_stage(plan)]))
@@ -149,7 +151,9 @@ def _lines(form: _Form, text: Sequence[str]) -> Iterator[str]:
     plan, rolls = form.plan, form.rolls
     starts = [k for k, line in enumerate(text) if re.match(r"; section \d+:", line)]
     if len(starts) != len(plan.passes):
-        raise ComputationError(f"{plan.name}: the program has {len(starts)} sections for {len(plan.passes)} passes")
+        raise ComputationError(
+            f"{plan.member.name}: the program has {len(starts)} sections for {len(plan.passes)} passes"
+        )
     up = form.positions.z(max(float(one.axes[:, 2].max()) for one in plan.passes) + CLEARANCE)
     time = f"{plan.seconds:.1f} s"
     for line in text[: starts[0]]:
@@ -196,7 +200,9 @@ def _section(form: _Form, one: Pass, up: str, lines: Sequence[str]) -> Iterator[
         parts = [_NUMBER.sub("{UP}", part) if part == up else part for part in parts]
         yield f"{'n' if numbered else 'c'} {' '.join(parts)}"
     if node != len(feeds):
-        raise ComputationError(f"{form.plan.name}: {len(feeds) - node} blocks of section {one.label!r} have no slots")
+        raise ComputationError(
+            f"{form.plan.member.name}: {len(feeds) - node} blocks of section {one.label!r} have no slots"
+        )
 
 
 def _slot(word: str) -> str:

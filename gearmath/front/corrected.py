@@ -118,9 +118,7 @@ class Correction(Shown):
             return {}
         judged = covariance.carried(judged_by_measured(file, member, found))
         try:
-            settings, effects = uncertain_settings(
-                member, found.member, found.file, self.found, judged, self.root_limit
-            )
+            settings, effects = uncertain_settings(member, found.file, self.found, judged, self.root_limit)
         except ComputationError as error:
             return {"no_uncertainties": str(error)}
         known: dict[str, dict[str, float]] = {}
@@ -189,7 +187,6 @@ def compensate(
         found.closing.check_topography()
         corrected = correcting.correct(
             member,
-            name,
             found.file,
             chosen,
             objective=objective,
@@ -203,7 +200,7 @@ def compensate(
             indexed=found.closing.withheld is None,
         )
     if thickness:
-        corrected.settings.update(with_thickness(member, name, corrected.settings, thickness, thickness_by))
+        corrected.settings.update(with_thickness(member, corrected.settings, thickness, thickness_by))
     return Correction(evaluation, corrected, noise_um, root_limit)
 
 

@@ -108,7 +108,7 @@ class Measurement(Shown):
         from gearmath.front.evaluated import Evaluation
 
         with about(self.source):
-            found = evaluate_member(self.file, self.member.spec, self.member.name, registered, progress, rotated)
+            found = evaluate_member(self.file, self.member.spec, registered, progress, rotated)
         return Evaluation(self, found)
 
     def compensate(self, settings: str | Sequence[str] = "few", **options: Any) -> Correction:
@@ -149,7 +149,7 @@ class Measurement(Shown):
         from gearmath.quality.correction.stock import share_stock
 
         with about(self.source):
-            return share_stock(self.member.spec, self.member.name, self.file, advance, least)
+            return share_stock(self.member.spec, self.file, advance, least)
 
     @checked_call(**dict.fromkeys(("part_number", "date", "operator", "machine", "probe"), Text()))
     def report(
@@ -230,7 +230,7 @@ def load_measurement(path: str | Path, member: Member | GearSet | str | Path) ->
     if file.member != one.name:
         raise InputError(f"{path}: member = {file.member}: the measurement of the {one.name} is wanted")
     with about(Path(path)):
-        check_belongs(one.spec, one.name, file)
+        check_belongs(one.spec, file)
     return Measurement(one, file, Path(path))
 
 
@@ -249,11 +249,11 @@ def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurem
     from gearmath.specs.flank_csv import flank_file
 
     places = blank_grid(member.spec, *grid, margin)
-    header = flank_header(member.spec, member.name, grid, margin)
+    header = flank_header(member.spec, grid, margin)
     row, col = (index.ravel() for index in np.indices(grid))
     files = []
     for flank in FLANKS:
-        nominal = solve_flank(member.spec, member.name, flank, places)
+        nominal = solve_flank(member.spec, flank, places)
         target = target_of(member.spec, flank, nominal)
         deviation, _ = predicted(target, target.vector)
         point = nominal.point + deviation[:, None] * nominal.normal

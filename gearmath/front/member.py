@@ -47,6 +47,9 @@ class Member(Shown):
     name: str
     spec: MemberSpec
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spec", self.spec.named(self.name))  # one that was made by hand was in no set yet
+
     @property
     def teeth(self) -> int:
         """How many."""
@@ -126,18 +129,18 @@ class Member(Shown):
         size = None if grid is None else grid_of(grid)
         if places is None:
             at = blank_grid(self.spec, *(size or (5, 9)), margin)
-            return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, margin))
+            return FlankSurface.of(self, flank, nominal_flank(self.spec, flank, at, margin))
         axial, radial = read_places(Path(places)) if isinstance(places, str | Path) else map(np.asarray, places)
         with about(Path(places) if isinstance(places, str | Path) else None):
             at = listed_grid(self.spec, axial, radial, size or (len(axial), 1))
-        return FlankSurface.of(self, flank, nominal_flank(self.spec, self.name, flank, at, None))
+        return FlankSurface.of(self, flank, nominal_flank(self.spec, flank, at, None))
 
     @checked_call
     def tooth(self, columns: int = 25) -> Tooth:
         """The whole tooth space, root and fillets too. Raises InputError where the cutter does not make it."""
         from gearmath.bevel.tooth import space_figures, tooth_space
 
-        space = tooth_space(self.spec, self.name, columns)
+        space = tooth_space(self.spec, columns)
         return Tooth(self, space, space_figures(self.spec, space))
 
     @checked_call
@@ -151,7 +154,7 @@ class Member(Shown):
 
         require_kernel()
         progress = begin(4, "stage")
-        bodies = [(self.name, member_patches(self.spec, self.name))]
+        bodies = [(self.name, member_patches(self.spec))]
         progress(2)
         return write_step(Path(path), bodies, progress)
 

@@ -87,7 +87,7 @@ class ProbingProgram(Shown):
             return calibration_sheet(machine, self.probe, self.cycle == "axes", file, words)
         head, fixture = obstacles(machine, self.shop)
         title, radius = member.gear_set.title, head.spindle_radius
-        what = title, member.name, member.spec, machine, self.probe, fixture, radius, self.touches, self.clearance
+        what = title, member.spec, machine, self.probe, fixture, radius, self.touches, self.clearance
         return probing_sheet(ProbingJob(*what), file, words)
 
     @checked_call
@@ -97,14 +97,14 @@ class ProbingProgram(Shown):
         if self.member is None:
             found = judge_calibration(self.read, name, machine, probe, begin(self._measuring, "block"))
         else:
-            spec, own = self.member.spec, self.member.name
+            spec = self.member.spec
             if not self._count:
                 raise InputError(f"{name}: touches nothing of the member: no touch is measured before its end")
             head, fixture = obstacles(machine, self.shop)
             heard = begin(3 * self._count + self.read.count("\n"), "step")
-            met = approaches(self.read, name, spec, own, machine, probe, fixture, head.spindle_radius, heard)
+            met = approaches(self.read, name, spec, machine, probe, fixture, head.spindle_radius, heard)
             clearances(met, name, "it is not run")
-            found = judge_probing(self.read, name, spec, own, machine, probe, begin(self._measuring, "block"))
+            found = judge_probing(self.read, name, spec, machine, probe, begin(self._measuring, "block"))
         refuse_faults(found, name)
 
     @checked_call
@@ -240,10 +240,10 @@ def _on_machine(
     """The member on the machine, nominal or as measured, clamped as the shop does."""
     clamping = shop.measuring_clamp(member.name) if shop else None
     if measured is None:
-        return ProbeMachine(member.spec, member.name, machine.spec, probe, seat=clamping)
+        return ProbeMachine(member.spec, machine.spec, probe, seat=clamping)
     file, source = measured.file, measured.source
     with about(source):
-        check_belongs(member.spec, member.name, file)
-        check_points(file, nominal_rows(file, member.spec, member.name), member.spec, member.name)
-        metal = MilledSurface(file, member.spec, member.name, str(source or "measured"))
-    return ProbeMachine(member.spec, member.name, machine.spec, probe, metal, metal.lowest, clamping)
+        check_belongs(member.spec, file)
+        check_points(file, nominal_rows(file, member.spec), member.spec)
+        metal = MilledSurface(file, member.spec, str(source or "measured"))
+    return ProbeMachine(member.spec, machine.spec, probe, metal, metal.lowest, clamping)

@@ -114,22 +114,22 @@ class Program(Shown):
         measured as that shop does. ``progress`` is called for every flank. Raises InputError where a flank is left
         uncut, and where it is measured without a shop.
         """
-        member, name, machine, shop = self.member.spec, self.member.name, self.machine.spec, shop_of(shop)
+        member, machine, shop = self.member.spec, self.machine.spec, shop_of(shop)
         if number is not None and shop is None:
             raise InputError("a measurement needs the file that says how the member sits and what the probe does")
         narrowest = None if member.cutting == "completing" else self.space
         if shop is not None or self.space is None:
-            runs = runs_of(self.path, member, name, machine, shop, narrowest)
+            runs = runs_of(self.path, member, machine, shop, narrowest)
         else:  # the same as those that are judged, but for the rounding of the blades' edges
             runs = [replace(run, cutter=cutter_of(member, run.cut.flanks, narrowest)) for run in self.runs]
         if number is None or shop is None:
-            file = mill_member(self.path, member, name, machine, shop, progress, runs)
+            file = mill_member(self.path, member, machine, shop, progress, runs)
         else:
             from gearmath.machine.measuring.measurement import measure_member
 
             around = teeth_around(member.teeth)
-            left = metal(self.path, member, name, machine, shop, around=around, progress=progress, runs=runs)
-            file = measure_member(left, member, name, shop, number)
+            left = metal(self.path, member, machine, shop, around=around, progress=progress, runs=runs)
+            file = measure_member(left, member, shop, number)
         return Measurement(self.member, file)
 
     @checked_call
@@ -140,13 +140,13 @@ class Program(Shown):
         [mm] is how far flanks may deviate. On a machine without errors. ``milled`` is what :meth:`mill` has found of
         such a machine, to be asked once.
         """
-        member, name, machine = self.member.spec, self.member.name, self.machine.spec
+        member, machine = self.member.spec, self.machine.spec
         if isinstance(milled, str | Path):
             milled = load_measurement(milled, self.member)
         known = None if milled is None else milled.file
         progress = begin(member.teeth, "space")
-        left = metal_faults(self.read, self.path, self.runs, member, name, machine, self.space, progress, known)
-        found = faults_of(self.read, self.path, self.runs, member, name, machine)
+        left = metal_faults(self.read, self.path, self.runs, member, machine, self.space, progress, known)
+        found = faults_of(self.read, self.path, self.runs, member, machine)
         slow = crawling(self.path, self.runs, member, machine, Stated.of(self.read))
         return Judgement(left, (*map(str, left.faults), *map(str, found)), tuple(slow))
 
@@ -154,8 +154,8 @@ class Program(Shown):
         """What :meth:`judge` finds, a sentence each; empty where the machine may run it. A dry run cuts no metal."""
         if Stated.of(self.read).coolant:
             return list(self.judge().faults)
-        member, name, machine = self.member.spec, self.member.name, self.machine.spec
-        return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, name, machine)]
+        member, machine = self.member.spec, self.machine.spec
+        return [str(fault) for fault in faults_of(self.read, self.path, self.runs, member, machine)]
 
     @checked_call(tolerance=KNOWN["report_tolerance"])
     def report(
@@ -174,13 +174,12 @@ class Program(Shown):
         from gearmath.machine.judging.report import milling_report
         from gearmath.specs.bevel_set import FLANKS
 
-        member, name, machine, shop = self.member.spec, self.member.name, self.machine.spec, shop_of(shop)
+        member, machine, shop = self.member.spec, self.machine.spec, shop_of(shop)
         corrected = shop is None and any(member.flank(flank).design for flank in FLANKS)
         progress = begin(5 * member.teeth * (1 + corrected), "surface")
         return milling_report(
             self.path,
             member,
-            name,
             machine,
             shop,
             tolerance,
@@ -209,13 +208,13 @@ class Program(Shown):
     def space(self) -> ToothSpace | None:
         """The tooth space of the member, None in face hobbing, of which flanks alone are judged."""
         member = self.member
-        return None if member.spec.process == "face_hobbing" else tooth_space(member.spec, member.name, _COLUMNS)
+        return None if member.spec.process == "face_hobbing" else tooth_space(member.spec, _COLUMNS)
 
     @cached_property
     def runs(self) -> list[CuttingRun]:
         """The tools of the program on a machine without errors, with blades as sharp as there are."""
         member, machine = self.member, self.machine.spec
-        return runs_of(self.path, member.spec, member.name, machine, None, self.space, SHARP_EDGE)
+        return runs_of(self.path, member.spec, machine, None, self.space, SHARP_EDGE)
 
     def _shown(self) -> tuple[str, list[Shows]]:
         figures: list[Shows] = [

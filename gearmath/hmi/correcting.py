@@ -102,7 +102,6 @@ def propose(evaluated: EvaluatedRun, which: str = WHICH[0]) -> Proposal:
     found.closing.check_topography()
     correction = correct(
         member,
-        evaluated.name,
         found.file,
         MACHINE_SETTINGS if which == "all" else None,
         few=which == "few",

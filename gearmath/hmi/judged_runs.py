@@ -87,13 +87,13 @@ class JudgedRuns:
                 self._judged.move_to_end(run)
                 return self._judged[run]
         evaluated = self.evaluated(run, progress)
-        file, member, name = evaluated.file, evaluated.member, evaluated.name
+        file, member = evaluated.file, evaluated.member
         covariance, source = point_covariance(file, None), "u_um of the file"
         if covariance is None:
             how = load_measurement(bundled(_ASSUMED))
             with stored_files(evaluated) as folder:
                 at = load_milling_machine(folder / MACHINE), load_calibration(folder / CALIBRATION)
-            covariance, source = touch_covariance(file, member, name, how, *at), f"{_ASSUMED}: {how.title} (assumed)"
+            covariance, source = touch_covariance(file, member, how, *at), f"{_ASSUMED}: {how.title} (assumed)"
         head, title = self._head(run)
         found = reported(
             evaluated.gear_set,

@@ -139,7 +139,7 @@ def limits(choice: Choice, dry_run: bool) -> dict[str, Limits]:
 def _limits(gear_set: str, machine: str, name: str, dry_run: bool, *changed: int) -> dict[str, Limits]:
     """The same of files as they were ``changed`` last [ns]: pages ask all the time, and to check a pair takes long."""
     member, on = load_set(gear_set).member(name).spec, load_machine(machine).spec
-    low, high = spindle_limits(member, name, on, dry_run)
+    low, high = spindle_limits(member, on, dry_run)
     finest, coarsest = tolerance_limits(member)
     stock = Limits(0.0, MOST_STOCK)
     return {

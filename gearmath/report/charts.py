@@ -131,7 +131,7 @@ def expected_topographies(
     """What the correction is expected to leave of each flank that it was made for, on the grid [mm]."""
     expected = {}
     for group, result in correction.identified.items():
-        targets = [flank_target(member, found.member, flank, found.file) for flank in group]
+        targets = [flank_target(member, flank, found.file) for flank in group]
         ends = np.cumsum([len(target.deviation) for target in targets])[:-1]
         for flank, target, part in zip(group, targets, np.split(result.residual, ends), strict=True):
             if not found.flanks[flank].topographies:

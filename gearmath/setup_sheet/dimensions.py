@@ -24,11 +24,11 @@ class Dimension:
     kind: Literal["length", "angle"] = "length"
 
 
-def dimensions(member: Member, name: str) -> list[Dimension]:
+def dimensions(member: Member) -> list[Dimension]:
     """What a drawing of a member states, beside the cone angles. Raises InputError where the flanks cannot be cut."""
     blank, ends = member.blank, evaluate("blank_ends", {"blank": member.blank.vector})
     mean, sine = transverse_module(member), math.sin(blank.delta)
-    cuts = {flank: cut_flank(member, name, flank, generation_of(member, flank)) for flank in FLANKS}
+    cuts = {flank: cut_flank(member, flank, generation_of(member, flank)) for flank in FLANKS}
     spiral = sum(abs(cut.spiral_angle) for cut in cuts.values()) / len(cuts)
     heel = blank.mean_cone_distance + blank.face_width / 2
     thickness = mean_tooth_thickness(member)
@@ -48,5 +48,5 @@ def dimensions(member: Member, name: str) -> list[Dimension]:
         Dimension("whole depth at the mean point", blank.mean_addendum + blank.mean_dedendum),
         Dimension("mean transverse tooth thickness, arc", thickness),
         Dimension("mean normal tooth thickness, arc", thickness * math.cos(spiral)),
-        *(Dimension(f"normal top land, {place}", land) for place, land in top_land(member, name).items()),
+        *(Dimension(f"normal top land, {place}", land) for place, land in top_land(member).items()),
     ]

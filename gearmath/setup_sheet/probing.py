@@ -24,7 +24,6 @@ class ProbingJob:
     """What a probing program does: number of touches, and the least clearances of its way in words."""
 
     title: str
-    name: str
     member: Member
     machine: MillingMachine
     probe: Calibration
@@ -37,13 +36,13 @@ class ProbingJob:
 def probing_sheet(job: ProbingJob, program: str, words: SheetWords = SINUMERIK_WORDS) -> str:
     """The page of one probing program as HTML, in the ``words`` of its control; ``program`` is its file name."""
     member, machine, probe = job.member, job.machine, job.probe
-    page = Page(f"Set-up sheet for probing: {job.name}")
+    page = Page(f"Set-up sheet for probing: {member.name}")
     page.paragraph(job.title)
     page.head(
-        [job.name],
+        [member.name],
         [
             ("Program", [program]),
-            ("Member", [f"{job.name}, {member.teeth} teeth, {member.hand} hand"]),
+            ("Member", [f"{member.name}, {member.teeth} teeth, {member.hand} hand"]),
             ("Nominal settings", [f"sha256 {design_sha256(member)[:16]}"]),
             ("Machine", [machine.name]),
             ("Probe", [probe.name]),

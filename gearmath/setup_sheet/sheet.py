@@ -33,17 +33,17 @@ def setup_sheet(facts: SetupFacts, program: str, timing: Timing, words: SheetWor
     """
     plan = facts.plan
     member = plan.member
-    page = Page(f"Set-up sheet: {plan.name}")
+    page = Page(f"Set-up sheet: {member.name}")
     page.paragraph(plan.title)
     method = (member.process, member.generation, member.cutting)
     page.head(
-        [plan.name],
+        [member.name],
         [
             ("Program", [program]),
             (
                 "Member",
                 [
-                    f"{plan.name}, {member.teeth} teeth, {member.hand} hand, "
+                    f"{member.name}, {member.teeth} teeth, {member.hand} hand, "
                     + ", ".join(word.replace("_", " ") for word in method)
                 ],
             ),
@@ -76,7 +76,7 @@ def _drawings(facts: SetupFacts) -> Iterator[tuple[str, str]]:
     """Machine, work, and the point of every cutter."""
     plan = facts.plan
     machine, axes = plan.machine, plan.passes[0].axes[0]
-    cutters = {cut.tool: cutter_of(plan.member, cut.flanks, plan.space) for cut in Cut.of(plan.member, plan.name)}
+    cutters = {cut.tool: cutter_of(plan.member, cut.flanks, plan.space) for cut in Cut.of(plan.member)}
     profiles, (first, *_) = work_profiles(plan.member, machine.fixture), cutters.values()
     x, b = float(axes[0]), float(axes[4])
     yield (

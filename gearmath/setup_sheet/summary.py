@@ -79,7 +79,7 @@ def summary_sheet(pair: BevelSet) -> str:
             f"Transverse backlash of the pair at the mean point: {backlash:.3f} mm, {backlash / _INCH:.4f} in."
         )
     for k, (name, member) in enumerate(pair.members.items()):
-        space = tooth_space(member, name)
+        space = tooth_space(member)
         page.heading(name.capitalize(), new_sheet=k > 0)
         method = (member.process, member.generation, member.cutting)
         page.head(
@@ -94,7 +94,7 @@ def summary_sheet(pair: BevelSet) -> str:
             page.paragraph("The settings are corrected ones; those of the nominal flanks stand in the set file.")
         for unit in UNITS:
             page.table(f"Blank, from the pitch apex; {unit.name}", ["figure", "value"], list(_blank(member, unit)))
-        found = dimensions(member, name)
+        found = dimensions(member)
         for unit in UNITS:
             page.table(f"Dimensions of the teeth; {unit.name}", ["figure", "value"], list(_dimensions(found, unit)))
         for unit in UNITS:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from derivations import notation
 from gearmath.errors import InputError, counted
@@ -120,7 +120,10 @@ class Blank(Sheet):
 
 
 class Member(Sheet):
-    """One member of the pair. ``index_correction`` turns each tooth space by that many degrees before it is cut."""
+    """One member of the pair. ``index_correction`` turns each tooth space by that many degrees before it is cut.
+
+    The members of a set know which one they are: ``name``, which is no key of the file.
+    """
 
     teeth: int = Field(ge=3, le=400)
     hand: Literal["left", "right"]
@@ -135,6 +138,22 @@ class Member(Sheet):
     concave: Flank
     convex: Flank
     index_correction: Annotated[tuple[float, ...], Unit("degree")] = Field(default=(), strict=False)
+    _name: str | None = PrivateAttr(default=None)
+
+    @property
+    def name(self) -> str:
+        """Which member of its set it is: "pinion" or "gear". Raises LookupError for one that was in no set yet."""
+        if self._name is None:
+            raise LookupError("this Member was in no BevelSet yet: say which one it is with named('pinion')")
+        return self._name
+
+    def named(self, name: str) -> Member:
+        """The member as the pinion or the gear of a set."""
+        if name == self._name:
+            return self
+        member = self.model_copy()
+        member._name = name
+        return member
 
     @classmethod
     def plain(cls, values: Mapping[str, Any], mm: float, where: tuple[str, ...]) -> dict[str, Any]:
@@ -254,6 +273,11 @@ class BevelSet(Sheet):
     shaft_angle: Angle = Field(gt=0, lt=180)
     pinion: Member | None = None
     gear: Member | None = None
+
+    @field_validator(*MEMBERS)
+    @classmethod
+    def _named(cls, member: Member | None, info: ValidationInfo) -> Member | None:
+        return None if member is None or info.field_name is None else member.named(info.field_name)
 
     @model_validator(mode="after")
     def _mates(self) -> BevelSet:

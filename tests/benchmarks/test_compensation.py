@@ -35,7 +35,7 @@ def problem(rows: int = 5, columns: int = 9) -> tuple[list, tuple]:
     """Targets of both flanks of the gear with errors of 50 um, and the variables."""
     gear = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).gear
     grid = blank_grid(gear, rows, columns)
-    targets = [target_of(gear, flank, solve_flank(gear, "gear", flank, grid)) for flank in FLANKS]
+    targets = [target_of(gear, flank, solve_flank(gear, flank, grid)) for flank in FLANKS]
     variables = variables_of(NINE, 2)
     errors = np.random.default_rng(0).uniform(-1, 1, len(NINE)) * [variable.bound for variable in variables]
     errors *= 0.01
@@ -124,7 +124,7 @@ def test_a_design_target_against_scipy(benchmark, host_compiler) -> None:
     """An ease-off of 75 um on a pinion flank by twelve settings, root within 25 um; scipy from one start."""
     pinion = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
     y, x = (index.ravel() * 2.0 / (n - 1) - 1 for index, n in zip(np.indices((5, 9)), (5, 9), strict=True))
-    target = target_of(pinion, "convex", solve_flank(pinion, "pinion", "convex", blank_grid(pinion)))
+    target = target_of(pinion, "convex", solve_flank(pinion, "convex", blank_grid(pinion)))
     (target,) = with_deviations([target], -0.075 * (0.4 * x**2 + 0.25 * y**2 + 0.35 * x * y))
     names = (
         *FREE,

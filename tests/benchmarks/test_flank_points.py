@@ -65,7 +65,7 @@ def test_flank_points_per_second_by_every_way(benchmark, places, by_vm, host_com
     n, engine, vm, compiled = len(start), flank_point(), by_vm(flank_point()), compile_kernel(flank_point())
     gear = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).gear
     grid = blank_grid(gear, 300, 300)  # of so many points that the engine compiles
-    points = solve_flank(gear, "gear", "concave", grid)
+    points = solve_flank(gear, "concave", grid)
     contact, _, _, residual = benchmark(engine, *places)
     assert residual.max() < 1e-9  # mm
     np.testing.assert_array_equal(vm(*places)[0], contact)
@@ -77,7 +77,7 @@ def test_flank_points_per_second_by_every_way(benchmark, places, by_vm, host_com
         return count / min(timeit.repeat(run, number=1, repeat=repeat if timed else 1))
 
     rates = {
-        "public": per_second(lambda: solve_flank(gear, "gear", "concave", grid), len(points.point), 5),
+        "public": per_second(lambda: solve_flank(gear, "concave", grid), len(points.point), 5),
         "engine": per_second(lambda: engine(*places), n, 7),
         "compiled": per_second(lambda: compiled(*places), n, 7),
         "vm": per_second(lambda: vm(*places), n, 3),

@@ -28,7 +28,7 @@ def test_draws_of_an_identification(benchmark, timed) -> None:
     """Mapped on all processors, on one, and as a loop over the solver: 45 points, four settings, exact surface."""
     draws, looped = (1000, 20) if timed else (40, 1)
     spec = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
-    one = target_of(spec, "concave", solve_flank(spec, "pinion", "concave", blank_grid(spec)))
+    one = target_of(spec, "concave", solve_flank(spec, "concave", blank_grid(spec)))
     errors = load_simulated_machine(bundled("simulated_shop.toml")).setting_errors("pinion")
     form, _ = predicted(one, one.settings + errors)
     (target,) = with_deviations([one], form)

@@ -88,7 +88,7 @@ def mill(program: Callable[..., MachinePath], vertical: MillingMachine) -> Calla
         tolerance: float = DEFAULT_TOLERANCE,
     ) -> FlankFile:
         path = program(gear_set, member, spaces, tolerance)
-        return mill_member(path, gear_set.member(member), member, vertical, errors)
+        return mill_member(path, gear_set.member(member), vertical, errors)
 
     return run
 
@@ -446,7 +446,7 @@ def mirrored(member: Member) -> Member:
         )
         spec["blade_offset_angle"] *= -1
         spec["work_rotation_offset"] += 180.0 * member.indexing_sign * (member.blade_groups or 0) / member.teeth
-    return Member.model_validate(values)
+    return Member.model_validate(values).named(member.name)
 
 
 @pytest.fixture(scope="session")

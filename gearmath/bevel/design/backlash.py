@@ -55,14 +55,14 @@ def _wider(member: Member, by: float) -> Member:
     values = member.model_dump()
     for flank in FLANKS:
         values[flank]["blade_point_radius"] += SIDES[flank] * by
-    return checked(values, Member, "pinion")
+    return checked(values, Member, "pinion").named("pinion")
 
 
 def _deeper(member: Member, by: float) -> Member:
     values = member.model_dump()
     for flank in FLANKS:
         values[flank]["sliding_base"] -= by
-    return checked(values, Member, "pinion")
+    return checked(values, Member, "pinion").named("pinion")
 
 
 def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Member:
@@ -71,7 +71,7 @@ def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Membe
     for flank, turn in turns.items():
         offset = values[flank]["work_rotation_offset"] - turn
         values[flank]["work_rotation_offset"] = math.remainder(to_step(offset, step), 360.0)
-    return checked(values, Member, "pinion")
+    return checked(values, Member, "pinion").named("pinion")
 
 
 def _azimuth(member: Member, flank: str) -> float:

@@ -234,4 +234,4 @@ def with_flank(member: Member, name: str, x: np.ndarray) -> Member:
     """The member with the settings of one flank."""
     values = member.model_dump()
     values[name] = {**values[name], **settings_table(x)}
-    return checked(values, Member, f"pinion {name} flank")
+    return checked(values, Member, f"pinion {name} flank").named("pinion")

@@ -34,13 +34,13 @@ _NEAR = 0.5
 _FLAT = 0.2
 
 
-def with_point_widths(member: Member, name: str) -> Member:
+def with_point_widths(member: Member) -> Member:
     """A member that is cut flank by flank, with point widths stated where those chosen for the slots are too wide.
 
     Raises InputError where no width is narrow enough.
     """
     try:
-        space = tooth_space(member, name)
+        space = tooth_space(member)
     except InputError:
         return member  # no tooth, of which the verdict says why
     found = {}
@@ -50,9 +50,9 @@ def with_point_widths(member: Member, name: str) -> Member:
         if width is None:
             least = _least_width(member, flank)
             raise InputError(
-                f"{name} {flank} flank: the far side of a cutter with a point width of {least:.3g} mm, the least "
-                f"that its edges leave, {_cuts(member, flank, space, least, _OFF, 0.0)}, which must be at most 0; "
-                "smaller blade_edge_radius, another thickness_factor or cutting = 'completing' is needed"
+                f"{member.name} {flank} flank: the far side of a cutter with a point width of {least:.3g} mm, the "
+                f"least that its edges leave, {_cuts(member, flank, space, least, _OFF, 0.0)}, which must be at most "
+                "0; smaller blade_edge_radius, another thickness_factor or cutting = 'completing' is needed"
             )
         if width < widest:
             found[flank] = member.flank(flank).model_copy(update={"blade_point_width": width})
@@ -146,7 +146,7 @@ def fillet_room(member: Member, flank: str, width: float) -> float:
     The tip leaves a line between the far edge and the flank's own fillet, to a few thousandths of its rise.
     """
     places = slice(ENDS[0], ENDS[-1] + 1)
-    space = tooth_space(member, "member", ENDS[-1] - ENDS[0] + 1)
+    space = tooth_space(member, ENDS[-1] - ENDS[0] + 1)
     surfaces = {surface.flank: surface for surface in (space.concave, space.convex)}
     own, other = surfaces[flank], surfaces[opposite(flank)]
     first = other.section.index("edge") - 1

@@ -108,7 +108,7 @@ class ReversedMember(Shown):
 def reverse(known: KnownMember, given: dict[str, GivenFlank], name: str) -> ReversedMember:
     """The member whose flanks reproduce the given ones, from nothing but its blank and its method.
 
-    ``name`` is the member's in messages. Raises InputError where the points are not of this blank or hand, or where no
+    ``name`` is that of the member. Raises InputError where the points are not of this blank or hand, or where no
     settings come within ``LIMIT``, ComputationError where the search finds no settings at all.
     """
     means = {}
@@ -124,7 +124,7 @@ def reverse(known: KnownMember, given: dict[str, GivenFlank], name: str) -> Reve
     radius = known.cutter_radius or cutter_radius(known, given, means)
     for part in _RADII:
         try:
-            found = _from_start(crown_gear_start(known, means, part * radius), given, means, name)
+            found = _from_start(crown_gear_start(known, means, part * radius).named(name), given, means)
         except (InputError, ComputationError) as error:
             said = said or error
             continue
@@ -190,14 +190,14 @@ def _one_space(
     )
 
 
-def _from_start(start: Member, given: dict[str, GivenFlank], means: dict[str, MeanPoint], name: str) -> ReversedMember:
+def _from_start(start: Member, given: dict[str, GivenFlank], means: dict[str, MeanPoint]) -> ReversedMember:
     hows = placed(start, means)
     flanks, found = {}, {}
     for group in [FLANKS] if start.cutting == "completing" else [(flank,) for flank in FLANKS]:
         first = FittedFlanks({flank: hows[flank] for flank in group}, np.zeros(0), ())
         before = {flank: left_by(hows[flank], given[flank]) for flank in group}
         scatter = {flank: noise(given[flank], before[flank], _UNKNOWN) for flank in group}
-        best = fitted(start, first, given, rms_of(np.array(list(scatter.values()))), name)
+        best = fitted(start, first, given, rms_of(np.array(list(scatter.values()))))
         for flank in group:
             found[flank] = best.hows[flank]
             after = left_by(best.hows[flank], given[flank])

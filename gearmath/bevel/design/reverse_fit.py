@@ -80,7 +80,7 @@ class FittedFlanks:
         return not self.possible, n * math.log(max(rms_of(self.left), NOTHING) ** 2) + len(self.free) * math.log(n)
 
 
-def fitted(start: Member, first: FittedFlanks, given: dict[str, GivenFlank], scatter: float, name: str) -> FittedFlanks:
+def fitted(start: Member, first: FittedFlanks, given: dict[str, GivenFlank], scatter: float) -> FittedFlanks:
     """The best of all stages, each from the one before: of those that can be cut, else of all.
 
     Raises ComputationError where none gives settings.
@@ -90,7 +90,7 @@ def fitted(start: Member, first: FittedFlanks, given: dict[str, GivenFlank], sca
     for free in chosen:
         found = None
         for _ in range(_ROUNDS):
-            found = _stage(start, near, given, free, scatter, _ROOT / len(chosen) / _ROUNDS, name)
+            found = _stage(start, near, given, free, scatter, _ROOT / len(chosen) / _ROUNDS)
             if found is None:
                 break
             near = found
@@ -105,26 +105,20 @@ def fitted(start: Member, first: FittedFlanks, given: dict[str, GivenFlank], sca
     return best
 
 
-def _is_flank(start: Member, hows: dict[str, Generation], name: str) -> bool:
+def _is_flank(start: Member, hows: dict[str, Generation]) -> bool:
     """Whether the settings cut flanks that a gear set may have: root, roll, tips and motions within their limits."""
     try:
         member = member_of(start, hows)
         for flank, how in hows.items():
-            cut_flank(member, name, flank, how)
-            check_grid(member, name, flank)
+            cut_flank(member, flank, how)
+            check_grid(member, flank)
     except (Misfit, InputError, ComputationError):
         return False
     return True
 
 
 def _stage(
-    start: Member,
-    near: FittedFlanks,
-    given: dict[str, GivenFlank],
-    free: Sequence[str],
-    scatter: float,
-    root: float,
-    name: str,
+    start: Member, near: FittedFlanks, given: dict[str, GivenFlank], free: Sequence[str], scatter: float, root: float
 ) -> FittedFlanks | None:
     """The settings after the fit of the ``free`` ones from those ``near``; None where there are none."""
     targets = [_target(start, flank, how, given[flank]) for flank, how in near.hows.items()]
@@ -151,7 +145,7 @@ def _stage(
         settings, motion = parts(targets[k].vector + found.change(k))
         hows[flank] = replace(how, settings=settings, motion=motion)
     off = np.concatenate([left_by(how, given[flank]) for flank, how in hows.items()])
-    return FittedFlanks(hows, off, tuple(free), found.active, _is_flank(start, hows, name))
+    return FittedFlanks(hows, off, tuple(free), found.active, _is_flank(start, hows))
 
 
 def _target(start: Member, flank: str, how: Generation, given: GivenFlank) -> FlankTarget:
@@ -180,7 +174,7 @@ def member_of(start: Member, hows: dict[str, Generation]) -> Member:
         for name, (setting, power) in MOVING.items():
             x[NAMES.index(name)] = how.motion[SETTINGS.index(setting), power - 1]
         values[flank] = {**values[flank], **settings_table(x)}
-    return checked(values, Member, "settings found")
+    return checked(values, Member, "settings found").named(start.name)
 
 
 def rms_of(values: np.ndarray) -> float:

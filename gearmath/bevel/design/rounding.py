@@ -39,7 +39,7 @@ def rounded_gear(gear: Member, shop: Shop) -> Member:
     for flank in FLANKS:
         for name in SETTINGS:
             values[flank][name] = to_step(values[flank][name], step_of(name, shop))
-    return checked(values, Member, "gear")
+    return checked(values, Member, "gear").named("gear")
 
 
 def rounded_pinion(flank: PinionFlank, shop: Shop) -> PinionFlank:

@@ -74,7 +74,7 @@ def design(
         )
     start = _crown_gear(data, blank_data, blank)
     for member in ("pinion", "gear"):
-        check_blank(start.member(member), member)  # before anything is computed for it
+        check_blank(start.member(member))  # before anything is computed for it
     backlash, slots = blank.mean_transverse_backlash, slots_of(blank)
     given_edges = {"pinion": data.pinion.blade_edge_radius, "gear": data.gear.blade_edge_radius}
     rounds = {
@@ -151,7 +151,7 @@ def _one_by_one(
         flanks[side] = rounded_pinion(pinion_flank(start, own, requests[side], data.pinion.may_change), data.shop)
         found = with_flank(found, own, flanks[side].x)
     found = with_backlash(found, gear, backlash, start, data.shop.angle_step)
-    return with_point_widths(found, "pinion"), dict(flanks)
+    return with_point_widths(found), dict(flanks)
 
 
 def _at_once(
@@ -165,9 +165,9 @@ def _at_once(
     values = start.model_dump()
     for flank in flanks.values():
         values[flank.name] = {**values[flank.name], **settings_table(flank.x)}
-    found = completing_backlash(checked(values, Member, "pinion"), gear, backlash, data.shop)
+    found = completing_backlash(checked(values, Member, "pinion").named("pinion"), gear, backlash, data.shop)
     if found.process == "face_hobbing":
-        found = with_tip_heights(found, "pinion", data.shop.length_step)
+        found = with_tip_heights(found, data.shop.length_step)
         if data.pinion.blade_edge_radius is None:
             found = with_room_for_tips(found)
     return found, dict(flanks)

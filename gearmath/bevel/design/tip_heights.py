@@ -21,7 +21,7 @@ from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 _LEAST, _TRIALS = 1e-3, 3
 
 
-def with_tip_heights(member: Member, name: str, step: float) -> Member:
+def with_tip_heights(member: Member, step: float) -> Member:
     """The member, face hobbed, with tips that reach the root of the blank in the middle of the space, on the mean over
     the face width; heights in steps [mm]. Raises ComputationError where a tip does not reach the root.
     """
@@ -30,15 +30,15 @@ def with_tip_heights(member: Member, name: str, step: float) -> Member:
     heights = {flank: member.flank(flank).blade_tip_height for flank in FLANKS}
     found = member
     for _ in range(_TRIALS):
-        half = space_widths(found, name)[0].mean / 2
+        half = space_widths(found)[0].mean / 2
         for flank in FLANKS:
-            heights[flank] -= float(_middle(found, name, flank, half).mean())
+            heights[flank] -= float(_middle(found, flank, half).mean())
         found = _with(member, heights)
     stepped = {flank: to_step(height, step) for flank, height in heights.items()}
     return _with(member, {flank: height if abs(height) >= _LEAST else 0.0 for flank, height in stepped.items()})
 
 
-def _middle(member: Member, name: str, flank: str, half: float) -> np.ndarray:
+def _middle(member: Member, flank: str, half: float) -> np.ndarray:
     """How high (9,) [mm] over the root of the blank the tip of a blade cuts, toe to heel, ``half`` off its corner."""
     how = generation_of(member, flank)
     section = blade_sections(member.flank(flank), SIDES[flank])["main"]
@@ -46,7 +46,9 @@ def _middle(member: Member, name: str, flank: str, half: float) -> np.ndarray:
     trace = root_trace(member, flank, how, start, half)
     inside = slice(ENDS[0], ENDS[-1] + 1)
     if not trace.converged[inside].all():
-        raise ComputationError(f"{name} {flank} flank: the tip of the blade does not reach the root from toe to heel")
+        raise ComputationError(
+            f"{member.name} {flank} flank: the tip of the blade does not reach the root from toe to heel"
+        )
     return above_root(member, trace.point)[inside]
 
 

@@ -81,9 +81,9 @@ def _flat(run: Mesh, thread: Thread, low: float, high: float) -> TouchPoint | No
     return zero(lambda at: thread.at(system, at), lambda touch: float(touch.tangent[6]) + system.ratio, low, high)
 
 
-def top_land(member: Member, name: str) -> dict[str, float]:
+def top_land(member: Member) -> dict[str, float]:
     """Normal top land [mm] at toe, mean and heel."""
-    space = tooth_space(member, name)
+    space = tooth_space(member)
     flank = space.concave
     delta = member.blank.delta
     _, spiral, _, _ = kernel("flank_angles")(delta, flank.point[0], flank.normal[0])
@@ -107,7 +107,7 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
         ) from error
     pinion, gear = made.pair.member("pinion"), made.pair.member("gear")
     module = mean_module(made)
-    lands = {name: top_land(member, name) for name, member in (("pinion", pinion), ("gear", gear))}
+    lands = {name: top_land(member) for name, member in (("pinion", pinion), ("gear", gear))}
     for name, land in lands.items():
         place = min(land, key=lambda one: land[one])
         if not land[place] >= LEAST_LAND * module:
@@ -115,11 +115,11 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
                 f"{name}: top land of {land[place]:.3g} mm at the {place}: must be at least {LEAST_LAND * module:.3g} "
                 f"mm, {LEAST_LAND:g} of the mean normal module; thickness_factor or mean_addendum_factor must change"
             )
-    ridges = {name: ridge(made.pair.member(name), tooth_space(made.pair.member(name), name)) for name in lands}
+    ridges = {name: ridge(made.pair.member(name), tooth_space(made.pair.member(name))) for name in lands}
     for name, height in ridges.items():
         if made.pair.member(name).process == "face_hobbing":
-            _check_tips(made.pair.member(name), name, height)
-    cuts = {name: undercut(made.pair.member(name), name) for name in lands}
+            _check_tips(made.pair.member(name), height)
+    cuts = {name: undercut(made.pair.member(name)) for name in lands}
     _check_undercut(cuts)
     figures: dict[str, Any] = {
         "cutter_radius_mm": made.blank_data.cutter.cutter_radius,
@@ -136,12 +136,12 @@ def verdict(made: Designed) -> tuple[dict[str, Any], dict[str, Mesh]]:
     return figures, runs
 
 
-def undercut(member: Member, name: str) -> float:
+def undercut(member: Member) -> float:
     """How far above the reach of the mate's tip [mm] a flank folds back on itself, at the most, up to toe and heel.
 
     Contact ends at the fold, but what the blade cuts beyond it takes metal from the flank above it, too.
     """
-    space = tooth_space(member, name)
+    space = tooth_space(member)
     points = np.concatenate([surface.point[surface.undercut] for surface in (space.concave, space.convex)])
     heights = over_reach(member, points[:, 2], np.hypot(points[:, 0], points[:, 1]))
     return float(np.max(heights, initial=0.0))
@@ -158,13 +158,13 @@ def _check_undercut(heights: dict[str, float]) -> None:
             )
 
 
-def _check_tips(member: Member, name: str, height: float) -> None:
+def _check_tips(member: Member, height: float) -> None:
     """Refuse a hobbed member whose tips leave more between them than the mate passes: a ridge [mm], or a fin."""
-    most, root = HIGHEST_RIDGE * member.blank.clearance, space_widths(member, name)[0]
+    most, root = HIGHEST_RIDGE * member.blank.clearance, space_widths(member)[0]
     if height > most:
         left = f"a ridge of {1000 * height:.0f} um" if math.isfinite(height) else "a fin"
         raise InputError(
-            f"{name}: {left} stays in the middle of the root, which may be at most {1000 * most:.0f} um high, "
+            f"{member.name}: {left} stays in the middle of the root, which may be at most {1000 * most:.0f} um high, "
             f"{HIGHEST_RIDGE:g} of the clearance: the root is {root.toe:.3g} mm wide at the toe and {root.heel:.3g} mm "
             f"at the heel, and tips with edges of {member.concave.blade_edge_radius:g} mm that pass the fillets at the "
             "toe do not meet at the heel; a smaller face_width, another thickness_factor or smaller blade_edge_radius "

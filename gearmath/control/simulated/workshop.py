@@ -73,15 +73,15 @@ class Workshop:
         spec = found.member(member)
         seat = self.shop.measuring_clamp(member) if self.shop else None
         if member not in self.metal:
-            return ProbeMachine(spec, member, self.machine, self.calibration, seat=seat)
-        metal = MilledSurface(self.metal[member], spec, member, name)
-        return ProbeMachine(spec, member, self.machine, self.calibration, metal, metal.lowest, seat)
+            return ProbeMachine(spec, self.machine, self.calibration, seat=seat)
+        metal = MilledSurface(self.metal[member], spec, name)
+        return ProbeMachine(spec, self.machine, self.calibration, metal, metal.lowest, seat)
 
     def _cut(self, text: str, name: str, run: ProgramRun) -> None:
         """Mill what the program has cut; the noise of a probe is no metal."""
         found, member = self._set_of(text, name)
         quiet = None if self.shop is None else self.shop.model_copy(update={"probe": ProbeErrors()})
-        self.metal[member] = mill_member(run.path, found.member(member), member, self.machine, quiet)
+        self.metal[member] = mill_member(run.path, found.member(member), self.machine, quiet)
 
     def _set_of(self, text: str, name: str) -> tuple[BevelSet, str]:
         """The set whose settings, or design, a program states, and the member."""

@@ -102,7 +102,7 @@ def blades_of(member: Member, edge_radius: float = 0.0) -> Blades:
     own = {flank: _as_cut(member.flank(flank), edge_radius) for flank in FLANKS}
     sections = {flank: blade_sections(own[flank], SIDES[flank]) for flank in FLANKS}
     phases = {"concave": 0.0, "convex": blade_phase(member)}
-    lengths = tip_lengths(member.model_copy(update=own), "member")
+    lengths = tip_lengths(member.model_copy(update=own))
     edges: list[Edge] = []
     for flank in FLANKS:
         parts = [_edge(own[flank], flank, part, section) for part, section in sections[flank].items()]
@@ -126,7 +126,7 @@ def slots_between(member: Member) -> dict[str, Widths]:
     if not blade_phase(member):
         width = tip_radius(member.concave, SIDES["concave"]) - tip_radius(member.convex, SIDES["convex"])
         return dict.fromkeys(FLANKS, Widths(width, width, width, width, width))
-    return space_widths(member, "member")[1]
+    return space_widths(member)[1]
 
 
 def _as_cut(spec: Flank, edge_radius: float) -> Flank:

@@ -23,8 +23,8 @@ class SpaceBody:
     good to some 5 µm on flanks of usual curvature, which is what a check for collisions needs.
     """
 
-    def __init__(self, member: Member, name: str) -> None:
-        space = tooth_space(member, name, _COLUMNS)
+    def __init__(self, member: Member) -> None:
+        space = tooth_space(member, _COLUMNS)
         low, high = space.ordered
         gamma_f, gamma_a = member.blank.delta_f, member.blank.delta_a
         parts = [_flank(low), _flank(high), _bridge(low.point[-1], high.point[-1], gamma_f)]

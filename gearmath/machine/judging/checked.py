@@ -41,10 +41,10 @@ def checked_cut(
     program or must not run it, and where that does not leave both flanks within the tolerance.
     """
     spec = bevel_set.member(member)
-    plan = cutting_plan(bevel_set, member, machine, job, begin(pass_count(spec, member, job), "pass"))
+    plan = cutting_plan(bevel_set, member, machine, job, begin(pass_count(spec, job), "pass"))
     text = dialect.cutting(plan, name)
     path = execute(dialect.read(text), file, Setup.of(machine))
-    faults = written_faults(dialect.read(text), path, spec, member, machine, begin(spec.teeth, "space"))
+    faults = written_faults(dialect.read(text), path, spec, machine, begin(spec.teeth, "space"))
     if faults:
         raise InputError(f"{file}: {'; '.join(map(str, faults))}: the program is not written")
     return CheckedCut(plan, text, path)

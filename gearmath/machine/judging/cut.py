@@ -51,11 +51,11 @@ def justified(stated: Stated, usual: float, rounding: float) -> float:
     return min(allowed(stated), max(DEFAULT_TOLERANCE, BESIDE_MOST * usual) + rounding)
 
 
-def missing(stated: Stated, runs: list[CuttingRun], member: Member, name: str) -> Iterator[Fault]:
+def missing(stated: Stated, runs: list[CuttingRun], member: Member) -> Iterator[Fault]:
     """Spaces that the program says it cuts and does not, with any of the tools of the member; all if it says none."""
     wanted = set(stated.spaces or range(member.teeth))
     cut = {run.cut.tool: set(run.spaces) for run in runs}
-    for one in Cut.of(member, name):
+    for one in Cut.of(member):
         lacking, more = sorted(wanted - cut.get(one.tool, set())), sorted(cut.get(one.tool, set()) - wanted)
         if lacking:
             yield Fault(f"space {lacking[0]} is not cut with {one.tool}, {len(lacking)} of {len(wanted)} are not")
@@ -165,7 +165,6 @@ class MetalLeft:
 def metal_left(
     runs: list[CuttingRun],
     member: Member,
-    name: str,
     machine: MillingMachine,
     stated: Stated,
     space: ToothSpace,
@@ -182,7 +181,7 @@ def metal_left(
     # the cutter is withdrawn by this along its axis, and leaves as much at the foot of the flanks
     most = stock / math.sin(flattest)
     found = watch(runs, member, machine, None, progress, groups, most)
-    tolerance = justified(stated, found.usual, control_share(member, name, machine).rounding)
+    tolerance = justified(stated, found.usual, control_share(member, machine).rounding)
     faults = []
     source = says(stated, tolerance)
     for value, (number, flank, line), wrong in (
@@ -204,7 +203,6 @@ def metal_left(
     states = surface_states(
         None,
         member,
-        name,
         machine,
         None,
         _exposed(groups, member),

@@ -13,7 +13,7 @@ from gearmath.specs.bevel_set import Member, settings_sha256
 from gearmath.specs.milling_machine import MillingMachine
 
 
-def header_faults(text: str, member: Member, name: str, machine: MillingMachine) -> Iterator[Fault]:
+def header_faults(text: str, member: Member, machine: MillingMachine) -> Iterator[Fault]:
     """Comments that say something else of cutter, blank, clamping and Z than the files of set and machine.
 
     And what a program of ours does not say, so that less could be judged.
@@ -23,7 +23,7 @@ def header_faults(text: str, member: Member, name: str, machine: MillingMachine)
         yield Fault(f"the header does not state: {', '.join(stated.unsaid)}")
     if stated.doubled:
         yield Fault(f"the header states more than once: {', '.join(stated.doubled)}")
-    wanted = dict(_statements(member, name, machine))
+    wanted = dict(_statements(member, machine))
     for number, line in enumerate(text.splitlines(), 1):
         if not line.startswith(";"):
             if line and not line.startswith("%"):
@@ -42,11 +42,11 @@ def _differing(said: str, known: str) -> tuple[str, str]:
     return next(((one, other) for one, other in parts if one != other), (said, known))
 
 
-def _statements(member: Member, name: str, machine: MillingMachine) -> Iterator[tuple[str, str]]:
+def _statements(member: Member, machine: MillingMachine) -> Iterator[tuple[str, str]]:
     """What a line begins with, and the whole of it."""
-    notes = [f"machine settings sha256: {settings_sha256(member)}", member_note(member, name), z_note(machine)]
+    notes = [f"machine settings sha256: {settings_sha256(member)}", member_note(member), z_note(machine)]
     notes += work_notes(BlankSizes.of(member, machine), machine)
-    for cut in Cut.of(member, name):
+    for cut in Cut.of(member):
         notes += [f"tool {cut.tool}, {flank}: {blade_words(member.flank(flank))}" for flank in cut.flanks]
     for note in notes:
         yield _about(note), note

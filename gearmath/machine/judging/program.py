@@ -56,20 +56,20 @@ _NAME = "the program"
 
 
 def faults_of(
-    text: str, path: MachinePath, runs: list[CuttingRun], member: Member, name: str, machine: MillingMachine
+    text: str, path: MachinePath, runs: list[CuttingRun], member: Member, machine: MillingMachine
 ) -> list[Fault]:
     """What a machine without errors must not do of a program, the first of each kind."""
     stated = Stated.of(text)
     found = [
         *motion_faults(path, runs, member, machine, stated),
-        *missing(stated, runs, member, name),
+        *missing(stated, runs, member),
         *beside_the_path(runs, member, machine, stated),
         *no_dry_run(runs, member, machine, stated),
         *plunge_ends(path, runs, member, stated),
         *unrun_faults(text, _NAME, path),
         *skipped_faults(text, _NAME),
     ]
-    asked = [*header_faults(text, member, name, machine)]
+    asked = [*header_faults(text, member, machine)]
     if not is_for_linuxcnc(text):
         asked = [*outside_faults(parsed(text, _NAME)), *asked]
     if reads_choice(text):
@@ -84,7 +84,6 @@ def metal_faults(
     path: MachinePath,
     runs: list[CuttingRun],
     member: Member,
-    name: str,
     machine: MillingMachine,
     space: ToothSpace | None,
     progress: Callable[[int], object] = lambda _: None,
@@ -100,18 +99,17 @@ def metal_faults(
     stated, made = Stated.of(text), as_cut(member, space)
     if space is None:
         known = milled if made == member else None
-        left = mill_member(path, made, name, machine, None, progress, runs) if known is None else known
+        left = mill_member(path, made, machine, None, progress, runs) if known is None else known
         borders = np.zeros(0) if stated.stock else left_at_borders(runs, made, machine)
-        return hobbed(left.deviation, borders, stated, control_share(made, name, machine).rounding)
-    own = space if made == member else tooth_space(made, name, 7)
-    return metal_left(runs, made, name, machine, stated, own, progress)
+        return hobbed(left.deviation, borders, stated, control_share(made, machine).rounding)
+    own = space if made == member else tooth_space(made, 7)
+    return metal_left(runs, made, machine, stated, own, progress)
 
 
 def written_faults(
     text: str,
     path: MachinePath,
     member: Member,
-    name: str,
     machine: MillingMachine,
     progress: Callable[[int], object] = lambda _: None,
 ) -> list[Fault]:
@@ -120,11 +118,11 @@ def written_faults(
     ``progress`` is called for every space or flank. Raises InputError where the text cuts with a tool that is not of
     the member.
     """
-    space = None if member.process == "face_hobbing" else tooth_space(member, name, 7)
-    runs = runs_of(path, member, name, machine, None, space, SHARP_EDGE)
-    found = faults_of(text, path, runs, member, name, machine)
+    space = None if member.process == "face_hobbing" else tooth_space(member, 7)
+    runs = runs_of(path, member, machine, None, space, SHARP_EDGE)
+    found = faults_of(text, path, runs, member, machine)
     if Stated.of(text).coolant:
-        found += metal_faults(text, path, runs, member, name, machine, space, progress).faults
+        found += metal_faults(text, path, runs, member, machine, space, progress).faults
     return found
 
 

@@ -72,7 +72,6 @@ class MillingReport(Shown):
 def milling_report(
     path: MachinePath,
     member: Member,
-    name: str,
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     tolerance: float = DEFAULT_TOLERANCE,
@@ -86,17 +85,19 @@ def milling_report(
     twice for corrected settings; ``space`` is the nominal space where it is known. Raises InputError if a tool is not
     of this member.
     """
-    space = space or tooth_space(member, name, columns)
-    runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
+    space = space or tooth_space(member, columns)
+    runs = runs_of(path, member, machine, errors, space, SHARP_EDGE)
     on_flanks = tolerance if flank_tolerance is None else flank_tolerance
     judged = (None, tolerance, columns, runs, progress)
-    states = surface_states(path, member, name, machine, errors, *judged, space, on_flanks)
+    states = surface_states(path, member, machine, errors, *judged, space, on_flanks)
     made, own = as_cut(member, space), []
     if made != member and errors is None:
-        other = tooth_space(made, name, columns)
-        own = surface_states(path, made, name, machine, None, *judged, other, on_flanks)
+        other = tooth_space(made, columns)
+        own = surface_states(path, made, machine, None, *judged, other, on_flanks)
     met = collisions(path, runs, member, machine, *obstacles(machine, errors))
-    return MillingReport(name, tolerance, on_flanks, tuple(states), tuple(own), tuple(met), timing(path, machine))
+    return MillingReport(
+        member.name, tolerance, on_flanks, tuple(states), tuple(own), tuple(met), timing(path, machine)
+    )
 
 
 def largest(states: tuple[SurfaceState, ...], surface: str) -> float:

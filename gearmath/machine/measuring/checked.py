@@ -67,9 +67,9 @@ def checked_probing(
     read = dialect.read(text)
     touches = planned_touches(read)
     progress = begin(touches // choice.repeat * (2 + choice.repeat) + read.count("\n"), "step")
-    found = approaches(read, file, spec, member, machine, calibration, fixture, head.spindle_radius, progress)
+    found = approaches(read, file, spec, machine, calibration, fixture, head.spindle_radius, progress)
     clear = clearances(found, file, _NOT_WRITTEN)
-    refuse_faults(judge_probing(read, file, spec, member, machine, calibration), file, _NOT_WRITTEN)
+    refuse_faults(judge_probing(read, file, spec, machine, calibration), file, _NOT_WRITTEN)
     return CheckedProbing(text, touches, clear)
 
 

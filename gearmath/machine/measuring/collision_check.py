@@ -77,7 +77,6 @@ def approaches(
     text: str,
     program: str,
     member: Member,
-    name: str,
     machine: MillingMachine,
     calibration: Calibration,
     fixture: Fixture | None = None,
@@ -93,7 +92,7 @@ def approaches(
     every MEAS block that is run, and then of the lines of the text whose blocks are looked at.
     Raises InputError with line and column for a text that cannot be run, or that ends in an alarm.
     """
-    watch = _Watch(member, name, machine, calibration, fixture or Fixture(), spindle_radius)
+    watch = _Watch(member, machine, calibration, fixture or Fixture(), spindle_radius)
     nearest: dict[tuple[str, str], Approach] = {}
     done = 0
     for block in watch.blocks(text, program, probe or watch.probe, progress):
@@ -109,15 +108,9 @@ class _Watch:
     """The probe and the work as bodies."""
 
     def __init__(
-        self,
-        member: Member,
-        name: str,
-        machine: MillingMachine,
-        calibration: Calibration,
-        fixture: Fixture,
-        spindle_radius: float,
+        self, member: Member, machine: MillingMachine, calibration: Calibration, fixture: Fixture, spindle_radius: float
     ) -> None:
-        self.body, self.calibration, self.spindle_radius = SpaceBody(member, name), calibration, spindle_radius
+        self.body, self.calibration, self.spindle_radius = SpaceBody(member), calibration, spindle_radius
         self.setup = Setup.of(machine, calibration.length)
         self._place = probe_height(machine, calibration), calibration.tip_offset, machine.pivot
         profiles = work_profiles(member, fixture)

@@ -44,7 +44,6 @@ def judge_probing(
     text: str,
     name: str,
     member: Member,
-    member_name: str,
     machine: MillingMachine,
     calibration: Calibration,
     progress: Callable[[int], object] = lambda ways: None,
@@ -55,7 +54,7 @@ def judge_probing(
     """
     tip = calibration.length + calibration.tip_radius - calibration.offset[2]
     clear = clear_height(room_of(member, machine, machine.fixture), machine, tip)
-    place = _on_flanks(member, member_name, machine, calibration)
+    place = _on_flanks(member, machine, calibration)
     return _judged(text, name, machine, calibration, at_the_ends, clear, clear, place, progress)
 
 
@@ -113,17 +112,17 @@ def _judged(
     return first_of_each(found)
 
 
-def _on_flanks(member: Member, name: str, machine: MillingMachine, calibration: Calibration) -> Place:
+def _on_flanks(member: Member, machine: MillingMachine, calibration: Calibration) -> Place:
     """Whether a touch is searched for on the line of the place that is written of it."""
     known = {}
     for flank in FLANKS:
-        targets = targets_of_space(member, name, flank, blank_grid(member), machine, calibration)
+        targets = targets_of_space(member, flank, blank_grid(member), machine, calibration)
         for k in range(len(targets)):
             known[flank, str(targets.row[k]), str(targets.col[k])] = targets.start[k], targets.end[k]
 
     def place(cells: dict[str, str], way: Way) -> str:
         where = cells["flank"], cells["row"], cells["col"]
-        if cells["member"] != name or where not in known or not cells["tooth"].isdecimal():
+        if cells["member"] != member.name or where not in known or not cells["tooth"].isdecimal():
             return "there is no such place"
         start, end = known[where]
         turn = 2 * math.pi * (int(cells["tooth"]) % member.teeth) / member.teeth

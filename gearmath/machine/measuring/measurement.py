@@ -24,7 +24,7 @@ from gearmath.specs.flank_csv import FlankFile
 from gearmath.specs.simulated_machine import SimulatedMachine
 
 
-def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMachine, run: int = 1) -> FlankFile:
+def measure_member(true: FlankFile, member: Member, shop: SimulatedMachine, run: int = 1) -> FlankFile:
     """What the measuring machine of a shop says of a member: the file it would write of a true one.
 
     ``true`` holds the metal as it is: deviations without noise, in mm along the nominal normals. ``run`` numbers the
@@ -33,15 +33,15 @@ def measure_member(true: FlankFile, member: Member, name: str, shop: SimulatedMa
     """
     file = _in_order(true, member)
     nominal = file.point - file.deviation[:, None] * file.normal
-    place = _work_axis(file, member, name), member.blank.delta_f, 0.0, np.zeros(3), np.zeros(3)
-    metal, _ = mounted(file.point, file.normal, shop.measuring_clamp(name))
+    place = _work_axis(file, member), member.blank.delta_f, 0.0, np.zeros(3), np.zeros(3)
+    metal, _ = mounted(file.point, file.normal, shop.measuring_clamp(member.name))
     (axes,) = kernel("probe_axes")(metal, *place)
     axes[:, :3] += np.linspace(0.0, 1.0, len(file))[:, None] * shop.measuring.drift.vector
     seen, _ = kernel("probe_tip")(axes, *place[2:])
     (normal,) = kernel("probe_axes")(file.normal, *place)  # about the origin: the normal in the axes of the machine
     (late,) = kernel("effective_radius")(normal[:, :3], 0.0, lobing(shop.probe))
     _, deviation = kernel("touched_point")(seen, 0.0, nominal, file.normal)
-    noise = np.random.default_rng([shop.seed, zlib.crc32(name.encode()), run]).standard_normal(len(file))
+    noise = np.random.default_rng([shop.seed, zlib.crc32(member.name.encode()), run]).standard_normal(len(file))
     met = deviation + late
     touched = replace(file, point=nominal + met[:, None] * file.normal, deviation=met)
     return touched.with_noise(shop.probe.sigma * noise, shop.probe.sigma)
@@ -58,10 +58,10 @@ def _in_order(file: FlankFile, member: Member) -> FlankFile:
     return replace(file.pick(index), tooth=tooth)
 
 
-def _work_axis(file: FlankFile, member: Member, name: str) -> np.ndarray:
+def _work_axis(file: FlankFile, member: Member) -> np.ndarray:
     """Positions (n,) [rad] of the work axis at which the points are touched, each with its space on top."""
     grid = file_grid(file, member)
-    points = {flank: solve_flank(member, name, flank, grid).point for flank in FLANKS}
+    points = {flank: solve_flank(member, flank, grid).point for flank in FLANKS}
     angle = {flank: kernel("space_azimuth")(points[flank], points[other])[0] for flank, other in (FLANKS, FLANKS[::-1])}
     place = file.row * grid.shape[1] + file.col
     at = np.array([angle[flank][k] for flank, k in zip(file.flank, place, strict=True)])

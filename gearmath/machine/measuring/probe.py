@@ -44,18 +44,17 @@ class ProbeMachine:
     def __init__(
         self,
         member: Member,
-        name: str,
         machine: MillingMachine,
         calibration: Calibration,
         stock: Stock = lambda flank, tooth, place: 0.0,
         lowest: float = 0.0,
         seat: Mounting | None = None,
     ) -> None:
-        self.member, self.name, self.calibration, self.stock = member, name, calibration, stock
+        self.member, self.name, self.calibration, self.stock = member, member.name, calibration, stock
         self._deepest = BODY_ERROR - min(lowest, 0.0)
         here, axes = mounted(np.zeros((3, 3)), np.eye(3), seat or Mounting())
         self._moved, self._tilted = here[0], axes
-        self.body = SpaceBody(member, name)
+        self.body = SpaceBody(member)
         self.touches: list[np.ndarray] = []
         self._height, self._pivot = probe_height(machine, calibration), machine.pivot
 

@@ -76,7 +76,7 @@ def _left_by(
 
 def _wall(member: Member, flank: str, distance: np.ndarray, level: np.ndarray) -> np.ndarray:
     """Angles (n,) [rad] about the axis of what the end of a tip leaves at cone distances and heights (n,)."""
-    angles, heights = corner_wall(member, flank, tip_lengths(member, "member")[flank])
+    angles, heights = corner_wall(member, flank, tip_lengths(member)[flank])
     heights = heights + root_height(member.blank)
     at, found = cone_distances(member.blank)[1], np.empty(len(distance))
     for k, (one, high) in enumerate(zip(distance, level, strict=True)):

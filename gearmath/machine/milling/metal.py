@@ -22,7 +22,6 @@ from gearmath.specs.simulated_machine import SimulatedMachine
 def metal(
     path: MachinePath,
     member: Member,
-    name: str,
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     whole: Sequence[int] = (0,),
@@ -37,9 +36,9 @@ def metal(
     where they are known. Raises InputError where the program
     leaves a flank uncut, or cuts with a tool that is not of this member.
     """
-    runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
+    runs = runs_of(path, member, machine, errors, root_of(member)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
-    nominal = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
+    nominal = {flank: nominal_flank(member, flank, grid) for flank in FLANKS}
     row, col = (index.ravel() for index in np.indices(grid.shape))
     reference, corners = (landmarks(row, col, grid.shape, corners=more) for more in (False, True))
     files = []

@@ -31,7 +31,6 @@ _SPACES = 12
 def mill_member(
     path: MachinePath,
     member: Member,
-    name: str,
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     progress: Callable[[int], object] = lambda _: None,
@@ -44,9 +43,9 @@ def mill_member(
     they are perfect. ``runs`` are the tools of the program where they are known. Raises InputError if the program cuts
     with a tool that is not of this member, or leaves a flank uncut.
     """
-    runs = runs_of(path, member, name, machine, errors, root_of(member, name)) if runs is None else runs
+    runs = runs_of(path, member, machine, errors, root_of(member)) if runs is None else runs
     grid = blank_grid(member, margin=MARGIN)
-    nominals = {flank: nominal_flank(member, name, flank, grid) for flank in FLANKS}
+    nominals = {flank: nominal_flank(member, flank, grid) for flank in FLANKS}
     files = []
     for run in runs:
         for flank in run.cut.flanks:
@@ -57,10 +56,10 @@ def mill_member(
                 progress(len(spaces))
     missing = [flank for flank in FLANKS if not any(file.flank[0] == flank for file in files)]
     if missing:
-        raise InputError(f"the program does not cut the {missing[0]} flank of the {name}")
+        raise InputError(f"the program does not cut the {missing[0]} flank of the {member.name}")
     whole = join(files)
     header = whole.header | {PLANNED: f"{len(whole)} points"}  # a file that is cut off later is told
-    return probed(replace(whole, header=header), name, errors)
+    return probed(replace(whole, header=header), member.name, errors)
 
 
 def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray:
@@ -75,11 +74,11 @@ def thickness(point: np.ndarray, opposite: np.ndarray, teeth: int) -> np.ndarray
     return np.linalg.norm(point[:, None] - beside[None], axis=2).min(axis=1)
 
 
-def root_of(member: Member, name: str) -> ToothSpace | None:
+def root_of(member: Member) -> ToothSpace | None:
     """The space whose root a fixed-setting cutter has to fit in; a completing one is what its blades are."""
     if member.cutting == "completing":
         return None
-    return tooth_space(member, name, 7)
+    return tooth_space(member, 7)
 
 
 def _together(spaces: list[int]) -> list[list[int]]:

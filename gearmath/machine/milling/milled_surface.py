@@ -28,7 +28,7 @@ class MilledSurface:
     surface of second degree through them. ``name`` is that of the file in messages.
     """
 
-    def __init__(self, file: FlankFile, member: Member, member_name: str, name: str) -> None:
+    def __init__(self, file: FlankFile, member: Member, name: str) -> None:
         self._member, self._name, self._teeth = member, name, member.teeth
         known = np.isfinite(file.deviation) & (file.tooth < member.teeth)
         self._file = file.pick(known)
@@ -36,7 +36,6 @@ class MilledSurface:
         self._reference = _pair(file.header["reference_point"], ",")
         self._margin = float(file.header["margins"].split(",")[0])
         self._grid = blank_grid(member, *self._shape, self._margin)
-        self._member_name = member_name
         self._surfaces: dict[tuple[str, int], ca.Function] = {}
         self._rates: dict[str, np.ndarray] = {}
 
@@ -92,7 +91,7 @@ class MilledSurface:
     def _rate(self, flank: str) -> np.ndarray:
         """How fast the grid (rows, columns) of a flank rises along its normals as the tooth is turned [mm/rad]."""
         if flank not in self._rates:
-            points = solve_flank(self._member, self._member_name, flank, self._grid)
+            points = solve_flank(self._member, flank, self._grid)
             (rates,) = kernel("motion_sensitivity")(points.point, points.normal)
             self._rates[flank] = rates[:, _TURN].reshape(self._shape)
         return self._rates[flank]

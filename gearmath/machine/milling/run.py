@@ -74,21 +74,20 @@ class CuttingRun(Shown):
 def runs_of(
     path: MachinePath,
     member: Member,
-    name: str,
     machine: MillingMachine,
     errors: SimulatedMachine | None,
     space: ToothSpace | None = None,
     edge_radius: float = 0.0,
 ) -> list[CuttingRun]:
     """The program's tools in their order. Raises InputError if one of them is not of this member."""
-    cuts = {cut.tool: cut for cut in Cut.of(member, name)}
+    cuts = {cut.tool: cut for cut in Cut.of(member)}
     for tool in path.tools:
         if tool not in cuts:
-            raise InputError(f'the program cuts with T="{tool}"; the {name} is cut with {" and ".join(cuts)}')
+            raise InputError(f'the program cuts with T="{tool}"; the {member.name} is cut with {" and ".join(cuts)}')
     if member.process == "face_hobbing":
-        return [_hobbing_run(path, member, name, cuts[path.tools[0]], machine, errors, edge_radius)]
+        return [_hobbing_run(path, member, cuts[path.tools[0]], machine, errors, edge_radius)]
     if np.isfinite(path.cutter).any():
-        raise InputError(f"the program turns the cutter as axis C; the {name} is face milled")
+        raise InputError(f"the program turns the cutter as axis C; the {member.name} is face milled")
     runs = []
     for index, tool in enumerate(path.tools):
         here = path.tool == index
@@ -96,7 +95,7 @@ def runs_of(
         inner = path.inner[here] if len(path.inner) else np.zeros(len(axes), dtype=bool)
         indexed = _spaces(axes, cutting, member, cut, machine)
         if errors is not None:
-            settings, setting_errors = member.flank(cut.flanks[0]).nominal.vector, errors.setting_errors(name)
+            settings, setting_errors = member.flank(cut.flanks[0]).nominal.vector, errors.setting_errors(member.name)
             axes, own = _divided(axes, np.where(cutting[1:], divisions(axes, errors), 1))
             cutting, indexed, line, inner = cutting[own], indexed[own], line[own], inner[own]
             motion = motion_of(member.flank(cut.flanks[0]))
@@ -121,7 +120,6 @@ def _divided(axes: np.ndarray, parts: np.ndarray) -> tuple[np.ndarray, np.ndarra
 def _hobbing_run(
     path: MachinePath,
     member: Member,
-    name: str,
     cut: Cut,
     machine: MillingMachine,
     errors: SimulatedMachine | None,
@@ -132,7 +130,7 @@ def _hobbing_run(
     still = cutting & ~np.isfinite(path.cutter)
     if still.any():
         line = int(path.line[np.argmax(still)])
-        raise InputError(f"line {line} cuts while the spindle is no axis C; the {name} is face hobbed")
+        raise InputError(f"line {line} cuts while the spindle is no axis C; the {member.name} is face hobbed")
     axes, turned, lines, inner = path.axes, path.cutter, path.line, path.inner
     if errors is not None:
         spec, index = member.flank(cut.flanks[0]), index_errors(errors.work_axis, member.teeth, errors.seed)
@@ -140,7 +138,7 @@ def _hobbing_run(
         parts = np.maximum(divisions(axes, errors), pitch_divisions(axes, index))
         six, own = _divided(np.column_stack([axes, turned]), np.where(cutting[1:], parts, 1))
         six = with_running_index_errors(six, settings, index, *given)
-        six = with_setting_errors(six, settings, errors.setting_errors(name), *given)
+        six = with_setting_errors(six, settings, errors.setting_errors(member.name), *given)
         axes = with_axis_errors(with_backlash(six[:, :5], errors), errors)
         turned, cutting, lines = six[:, 5], cutting[own], lines[own]
         inner = inner[own] if len(inner) else inner

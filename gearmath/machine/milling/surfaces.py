@@ -92,7 +92,6 @@ def nominal_surfaces(member: Member, space: ToothSpace) -> list[Surface]:
 def surface_states(
     path: MachinePath | None,
     member: Member,
-    name: str,
     machine: MillingMachine,
     errors: SimulatedMachine | None = None,
     spaces: Sequence[int] | None = None,
@@ -109,13 +108,13 @@ def surface_states(
     ``runs`` replaces the tools of the program, whose ``path`` is then not needed; ``space`` the nominal space.
     ``progress`` is called with the number of surfaces done. Raises InputError if a tool is not of this member.
     """
-    space = space or tooth_space(member, name, columns)
+    space = space or tooth_space(member, columns)
     *surfaces, root = nominal_surfaces(member, space)
-    surfaces.append(generated_root(root, member, name, space))
+    surfaces.append(generated_root(root, member, space))
     if runs is None:
         if path is None:
             raise ValueError("either path or runs must be given")
-        runs = runs_of(path, member, name, machine, errors, space, SHARP_EDGE)
+        runs = runs_of(path, member, machine, errors, space, SHARP_EDGE)
     if spaces is None:
         spaces = sorted({number for run in runs for number in run.spaces})
     lines = np.concatenate([run.line for run in runs])
@@ -132,7 +131,7 @@ def surface_states(
     return states
 
 
-def generated_root(root: Surface, member: Member, name: str, space: ToothSpace) -> Surface:
+def generated_root(root: Surface, member: Member, space: ToothSpace) -> Surface:
     """A root moved along its normals to the envelope of all tips that generate it at the nominal settings.
 
     Points that no tool comes near stay; those at a step of it, in face hobbing where a tip ends, are left out.
@@ -141,19 +140,19 @@ def generated_root(root: Surface, member: Member, name: str, space: ToothSpace) 
         point, even = root_of_tips(_as_designed(member), root.point, root.normal)
         moved = (point, root.normal, root.row, root.col, root.start)
         return Surface(root.name, *(values[even] for values in moved))
-    where = left_by_exact_motion(member, name, space, root)
+    where = left_by_exact_motion(member, space, root)
     moved = root.point + np.where(np.isfinite(where), where, 0.0)[:, None] * root.normal
     return replace(root, point=moved)
 
 
-def left_by_exact_motion(member: Member, name: str, space: ToothSpace, surface: Surface) -> np.ndarray:
+def left_by_exact_motion(member: Member, space: ToothSpace, surface: Surface) -> np.ndarray:
     """What all tools of a member leave on a surface of space 0 (n,) [mm] at the nominal settings; NaN for all of it.
 
     The way of every tool is divided so finely that it counts as curved.
     """
     left = np.full(len(surface.point), np.nan)
     exact = _as_designed(member)
-    for cut in Cut.of(exact, name):
+    for cut in Cut.of(exact):
         cutter = cutter_of(exact, cut.flanks, space, SHARP_EDGE)
         spec = exact.flank(cut.flanks[0])
         if exact.generation == "generated":

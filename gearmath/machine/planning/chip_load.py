@@ -40,7 +40,7 @@ class ChipLoad:
 
 
 def chip_loads(
-    member: Member, name: str, machine: MillingMachine, passes: Sequence[Pass], rpm: float, plunge_feed: float
+    member: Member, machine: MillingMachine, passes: Sequence[Pass], rpm: float, plunge_feed: float
 ) -> tuple[ChipLoad, ...]:
     """The chips (29.2) of every flank in the last pass of its cutter, at their thickest.
 
@@ -48,7 +48,7 @@ def chip_loads(
     went through metal. Of a Formate cut and in face hobbing the plunge is the one that is planned.
     """
     last = {one.tool: one.in_straight_parts() for one in passes}
-    cuts = [(cut, flank) for cut in Cut.of(member, name) for flank in cut.flanks if cut.tool in last]
+    cuts = [(cut, flank) for cut in Cut.of(member) for flank in cut.flanks if cut.tool in last]
     return tuple(_load(member, flank, machine, last[cut.tool], rpm, plunge_feed) for cut, flank in cuts)
 
 

@@ -108,7 +108,6 @@ class CuttingPlan:
     """
 
     title: str
-    name: str
     member: Member
     machine: MillingMachine
     job: CuttingJob
@@ -142,22 +141,22 @@ def cutting_plan(
         if most == _MOST_FEED:
             raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, the limit")
         raise InputError(f"feed = {job.feed:g} mm/min: must be at most {most:g}, max_feed_per_min of {machine.name}")
-    _, fastest = spindle_limits(member, name, machine, job.dry_run)
+    _, fastest = spindle_limits(member, machine, job.dry_run)
     if machine.spindle_speed_rpm[1] >= job.spindle_rpm > fastest:
         known = math.floor(100 * fastest) / 100
         raise InputError(
             f"spindle speed = {job.spindle_rpm:g} rpm: must be at most {known:g} rpm, where the tips of the blades "
             f"reach max_cutting_speed {machine.max_cutting_speed:g} m/min of {machine.name}"
         )
-    head, space = machine.cutter_head, _space(member, name)
+    head, space = machine.cutter_head, _space(member)
     room = room_of(member, machine, machine.fixture)
-    radius = max(widest(cutter_of(member, cut.flanks, space, 0.0), head) for cut in Cut.of(member, name))
-    share = control_share(member, name, machine)
+    radius = max(widest(cutter_of(member, cut.flanks, space, 0.0), head) for cut in Cut.of(member))
+    share = control_share(member, machine)
     passes: list[Pass] = []
-    for one in _passes(member, name, machine, job, share):
+    for one in _passes(member, machine, job, share):
         passes.append(one)
         progress(1)
-    return CuttingPlan(bevel_set.title, name, member, machine, job, tuple(passes), share, space, room, radius)
+    return CuttingPlan(bevel_set.title, member, machine, job, tuple(passes), share, space, room, radius)
 
 
 def feed_limits(machine: MillingMachine, dry_run: bool) -> tuple[float, float]:
@@ -165,13 +164,13 @@ def feed_limits(machine: MillingMachine, dry_run: bool) -> tuple[float, float]:
     return _LEAST_FEED, _MOST_FEED if dry_run else machine.max_feed_per_min or _MOST_FEED
 
 
-def spindle_limits(member: Member, name: str, machine: MillingMachine, dry_run: bool) -> tuple[float, float]:
+def spindle_limits(member: Member, machine: MillingMachine, dry_run: bool) -> tuple[float, float]:
     """Lowest and highest speed [1/min] of the spindle, at which no blade tip cuts faster than the machine may."""
     low, high = machine.spindle_speed_rpm
     if dry_run or machine.max_cutting_speed is None:
         return low, high
-    space = _space(member, name)
-    radius = max(cutter_of(member, cut.flanks, space).tip_radius for cut in Cut.of(member, name))
+    space = _space(member)
+    radius = max(cutter_of(member, cut.flanks, space).tip_radius for cut in Cut.of(member))
     return low, min(high, 1000 * machine.max_cutting_speed / (2 * math.pi * radius))
 
 
@@ -180,58 +179,58 @@ def tolerance_limits(member: Member) -> tuple[float, float]:
     return LEAST_TOLERANCE if member.process == "face_hobbing" else TOLERANCES[0], TOLERANCES[1]
 
 
-def _space(member: Member, name: str) -> ToothSpace | None:
+def _space(member: Member) -> ToothSpace | None:
     """The tooth space that tells how wide the cutters of single flanks are."""
-    return None if member.cutting == "completing" else tooth_space(member, name, 7)
+    return None if member.cutting == "completing" else tooth_space(member, 7)
 
 
-def pass_count(member: Member, name: str, job: CuttingJob) -> int:
+def pass_count(member: Member, job: CuttingJob) -> int:
     """How many passes the program of a job has: in face hobbing one a stage, else one a tool, stage and space."""
     hobbed = member.process == "face_hobbing"
-    return len(job.stages) * (1 if hobbed else len(Cut.of(member, name)) * len(job.spaces))
+    return len(job.stages) * (1 if hobbed else len(Cut.of(member)) * len(job.spaces))
 
 
-def _passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob, share: ControlShare) -> Iterator[Pass]:
+def _passes(member: Member, machine: MillingMachine, job: CuttingJob, share: ControlShare) -> Iterator[Pass]:
     """All passes in their order: tool by tool, roughing before finishing, space by space."""
     if member.process == "face_hobbing":
-        yield from _hobbing_passes(member, name, machine, job)
+        yield from _hobbing_passes(member, machine, job)
         return
     angles = tooth_angles(member.teeth, member.rad("index_correction"))
     beyond = next((space for space in job.spaces if not 0 <= space < member.teeth), None)
     if beyond is not None:
-        raise InputError(f"{name}: space {beyond}: must be a number from 0 to {member.teeth - 1}")
+        raise InputError(f"{member.name}: space {beyond}: must be a number from 0 to {member.teeth - 1}")
     stands = None
-    for cut in Cut.of(member, name):
-        _check_motions(member, name, cut)
+    for cut in Cut.of(member):
+        _check_motions(member, cut)
         for stage, stock, tolerance in job.stages:
             theta, first = first_pass(member, cut, machine, replace(job, tolerance=tolerance), share)
             first.axes[:, 2] += lift(member, cut, stock, job.dry_run)
             for space in job.spaces:
                 label = f"space {space} {' and '.join(cut.flanks)}" + (f" {stage}" if len(job.stages) > 1 else "")
                 indexed = first.axes + np.array([0, 0, 0, angles[space], 0])
-                axes = within_travel(indexed, theta, machine, f"{name}, {label}", stands)
+                axes = within_travel(indexed, theta, machine, f"{member.name}, {label}", stands)
                 stands = axes[-1]
                 yield replace(first, label=label, tooth=int(space), axes=axes)
 
 
-def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: CuttingJob) -> Iterator[Pass]:
+def _hobbing_passes(member: Member, machine: MillingMachine, job: CuttingJob) -> Iterator[Pass]:
     """One pass a stage, through all spaces at once."""
     if sorted(set(job.spaces)) != list(range(member.teeth)):
         raise InputError(
-            f"{name}: spaces = {_short(job.spaces)}: face hobbing cuts all spaces in one roll: it must be all "
+            f"{member.name}: spaces = {_short(job.spaces)}: face hobbing cuts all spaces in one roll: it must be all "
             f"{member.teeth}"
         )
     if any(member.index_correction):
-        raise InputError(f"{name}: index_correction: face hobbing indexes without end, and not space by space")
-    (cut,) = Cut.of(member, name)
-    _check_motions(member, name, cut)
+        raise InputError(f"{member.name}: index_correction: face hobbing indexes without end, and not space by space")
+    (cut,) = Cut.of(member)
+    _check_motions(member, cut)
     spec, curved = member.flank(cut.flanks[0]), job.blocks == "poly" and member.generation == "generated"
     if curved:
-        check_counting(name, machine)
+        check_counting(member.name, machine)
     tooth, above = tooth_in_roll(member, cut), _HOBBING_DEPTHS * _depth(member)
     for stage, stock, tolerance in job.stages:
         given = (tolerance, job.feed, job.spindle_rpm, above, PLUNGE_FEED, tooth)
-        motion = hobbing_motion(member, name, cut, machine, *given)
+        motion = hobbing_motion(member, cut, machine, *given)
         one = (
             curved_hobbing(spec, motion, machine, degree_for(machine, 6))
             if curved
@@ -239,7 +238,7 @@ def _hobbing_passes(member: Member, name: str, machine: MillingMachine, job: Cut
         )
         one.axes[:, 2] += lift(member, cut, stock, job.dry_run)
         label = f"all spaces {stage}, {motion.turns:.1f} turns of the work in the roll"
-        axes = within_travel(one.axes, one.theta, machine, f"{name}, {label}")
+        axes = within_travel(one.axes, one.theta, machine, f"{member.name}, {label}")
         yield Pass(cut.tool, label, 0, axes, one.seconds, theta=one.theta, bends=one.bends)
 
 
@@ -312,6 +311,8 @@ def _flattest(member: Member, cut: Cut) -> float:
     return min(member.flank(flank).alpha for flank in cut.flanks)
 
 
-def _check_motions(member: Member, name: str, cut: Cut) -> None:
+def _check_motions(member: Member, cut: Cut) -> None:
     if len({repr(member.flank(flank).motion) for flank in cut.flanks}) > 1:
-        raise InputError(f"{name}: motion: one cutter cuts both flanks at once, so that both must have the same motion")
+        raise InputError(
+            f"{member.name}: motion: one cutter cuts both flanks at once, so that both must have the same motion"
+        )

@@ -97,7 +97,6 @@ class HobbingMotion:
 
 def hobbing_motion(
     member: Member,
-    name: str,
     cut: Cut,
     machine: MillingMachine,
     tolerance: float,
@@ -113,7 +112,7 @@ def hobbing_motion(
     turned it when the blade meets it; ``rpm`` is the speed of the cutter; both give way to the axes. Raises InputError
     for a machine without C, and for tolerance, feed or speed out of range.
     """
-    _check(name, machine, tolerance, feed, rpm)
+    _check(member.name, machine, tolerance, feed, rpm)
     drive, spec, limits = Drive.of(member, machine), member.flank(cut.flanks[0]), machine.limits(6)
     pivot, per_turn = (machine.pivot_height, machine.pivot), drive.seconds_per_turn(limits, rpm)
     start, end, turns = _roll(member, cut, drive, (1 - _CHORD_SHARE) * tolerance - ROUNDING - C_ROUNDING)
@@ -122,7 +121,8 @@ def hobbing_motion(
         turns = max(turns, way / min(feed * per_turn / 60.0, _ROLL_PER_TURN))
     if turns > _MOST_TURNS:
         raise InputError(
-            f"{name}: feed = {feed} mm/min: asks for {turns:.0f} turns of the work in the roll, {_MOST_TURNS} at most"
+            f"{member.name}: feed = {feed} mm/min: asks for {turns:.0f} turns of the work in the roll, {_MOST_TURNS} "
+            "at most"
         )
     down = lift / min(plunge_feed * per_turn / 60.0, _PLUNGE_PER_TURN)
     return HobbingMotion(drive, start, end, down, turns, per_turn, lift, _CHORD_SHARE * tolerance)

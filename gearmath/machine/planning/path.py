@@ -42,11 +42,11 @@ class Cut:
     flanks: tuple[str, ...]
 
     @staticmethod
-    def of(member: Member, name: str) -> tuple[Cut, ...]:
+    def of(member: Member) -> tuple[Cut, ...]:
         """The passes that cut a space: one for a completing cutter, one a flank for fixed settings."""
         if member.cutting == "completing":
-            return (Cut(name.upper(), FLANKS),)
-        return tuple(Cut(f"{name}_{flank}".upper(), (flank,)) for flank in FLANKS)
+            return (Cut(member.name.upper(), FLANKS),)
+        return tuple(Cut(f"{member.name}_{flank}".upper(), (flank,)) for flank in FLANKS)
 
 
 def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:

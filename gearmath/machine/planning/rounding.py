@@ -61,21 +61,21 @@ def axis_effects(member: Member, cut: Cut, machine: MillingMachine) -> np.ndarra
     return np.abs(gradient)
 
 
-def control_share(member: Member, name: str, machine: MillingMachine) -> ControlShare:
+def control_share(member: Member, machine: MillingMachine) -> ControlShare:
     """The most that the flanks of a member may deviate by what the control does, each axis at its worst."""
     half, off = machine.control.half_increments, machine.control.path_tolerance
     if member.process == "face_hobbing":
         return ControlShare(math.sqrt(3) * half[0] + (2 * FROM_AXIS + FROM_CUTTER) * half[3], _hobbed_share(*off))
-    effects = _effects(member, name, machine)
+    effects = _effects(member, machine)
     return ControlShare(float((effects @ half).max()), _share(effects, *off))
 
 
-def path_share(member: Member, name: str, machine: MillingMachine, linear: float, turning: float) -> float:
+def path_share(member: Member, machine: MillingMachine, linear: float, turning: float) -> float:
     """How far flanks may deviate [mm] where the control leaves the path by ``linear`` [mm] in X Y Z together, and by
     ``turning`` [rad] in each of A and B."""
     if member.process == "face_hobbing":
         return _hobbed_share(linear, turning)
-    return _share(_effects(member, name, machine), linear, turning)
+    return _share(_effects(member, machine), linear, turning)
 
 
 def _hobbed_share(linear: float, turning: float) -> float:
@@ -86,6 +86,6 @@ def _share(effects: np.ndarray, linear: float, turning: float) -> float:
     return float((np.linalg.norm(effects[:, :3], axis=1) * linear + effects[:, 3:].sum(axis=1) * turning).max())
 
 
-def _effects(member: Member, name: str, machine: MillingMachine) -> np.ndarray:
+def _effects(member: Member, machine: MillingMachine) -> np.ndarray:
     """:func:`axis_effects` on all flanks of a member (n, 5)."""
-    return np.concatenate([axis_effects(member, cut, machine) for cut in Cut.of(member, name)])
+    return np.concatenate([axis_effects(member, cut, machine) for cut in Cut.of(member)])

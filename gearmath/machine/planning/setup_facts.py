@@ -110,8 +110,8 @@ class SetupFacts:
     def of(plan: CuttingPlan, plunge_feed: float) -> SetupFacts:
         """``plunge_feed`` [mm/min] is that down to the first point of a roll."""
         member, machine = plan.member, plan.machine
-        chips = chip_loads(member, plan.name, machine, plan.passes, plan.job.spindle_rpm, plunge_feed)
-        tools = tools_of(member, plan.name, plan.space)
+        chips = chip_loads(member, machine, plan.passes, plan.job.spindle_rpm, plunge_feed)
+        tools = tools_of(member, plan.space)
         left = ridge(member, plan.space)
         return SetupFacts(plan, BlankSizes.of(member, machine), tools, chips, tuple(_sections(plan)), left)
 
@@ -180,9 +180,9 @@ def setup_notes(facts: SetupFacts) -> Iterator[str]:
         yield f"unconfirmed: {sentence}"
 
 
-def member_note(member: Member, name: str) -> str:
+def member_note(member: Member) -> str:
     """Which member a program is for."""
-    return f"member: {name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}"
+    return f"member: {member.name}, {member.teeth} teeth, {member.hand} hand, {member.cutting.replace('_', ' ')}"
 
 
 def z_note(machine: MillingMachine) -> str:

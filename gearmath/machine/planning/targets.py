@@ -42,7 +42,6 @@ def tip_positions(
 
 def probe_targets(
     member: Member,
-    name: str,
     machine: MillingMachine,
     calibration: Calibration,
     topography: Sequence[int] = (0,),
@@ -60,9 +59,9 @@ def probe_targets(
     """
     beyond = next((tooth for tooth in topography if not 0 <= tooth < member.teeth), None)
     if beyond is not None:
-        raise InputError(f"{name}: tooth {beyond} for topography: must be a number from 0 to {member.teeth - 1}")
+        raise InputError(f"{member.name}: tooth {beyond} for topography: must be a number from 0 to {member.teeth - 1}")
     grid = blank_grid(member) if grid is None else grid
-    flanks = [targets_of_space(member, name, flank, grid, machine, calibration) for flank in FLANKS]
+    flanks = [targets_of_space(member, flank, grid, machine, calibration) for flank in FLANKS]
     parts = []
     for tooth in range(member.teeth + 1):
         for one in flanks:
@@ -76,7 +75,7 @@ def probe_targets(
                 part.tooth[:] = tooth
                 parts.append(part.turned_by(np.full(len(part), angle)))
     if not parts:
-        raise InputError(f"{name}: there is nothing to probe: neither a tooth for topography, nor pitch")
+        raise InputError(f"{member.name}: there is nothing to probe: neither a tooth for topography, nor pitch")
     joined = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Targets))
     return Targets(*joined)
 
@@ -94,14 +93,14 @@ def landmarks(row: np.ndarray, col: np.ndarray, shape: tuple[int, int], corners:
 
 
 def targets_of_space(
-    member: Member, name: str, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
+    member: Member, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> Targets:
     """The touches of the whole grid of one flank of space 0.
 
     Raises InputError naming flank, row and column where the tip has no room between the flanks.
     """
     (other,) = (each for each in FLANKS if each != flank)
-    points, opposite = (solve_flank(member, name, each, grid) for each in (flank, other))
+    points, opposite = (solve_flank(member, each, grid) for each in (flank, other))
     row, col = (index.ravel() for index in np.indices(grid.shape))
     r = calibration.tip_radius
     (touch,) = kernel("probe_target")(points.point, points.normal, r, 0.0)
@@ -110,8 +109,8 @@ def targets_of_space(
     if (standoff < _LEAST_APPROACH).any():
         k = int(np.argmin(standoff))
         raise InputError(
-            f"{name} {flank} flank, row {row[k]}, col {col[k]}: tip_radius = {r} mm: leaves {room[k]:.3f} mm to the "
-            f"opposite flank, {2 * _LEAST_APPROACH:g} mm are needed"
+            f"{member.name} {flank} flank, row {row[k]}, col {col[k]}: tip_radius = {r} mm: leaves {room[k]:.3f} mm to "
+            f"the opposite flank, {2 * _LEAST_APPROACH:g} mm are needed"
         )
     (A,) = kernel("space_azimuth")(points.point, opposite.point)
     positions = []

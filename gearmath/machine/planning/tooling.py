@@ -49,10 +49,10 @@ class Tool:
     point: PointWidth
 
 
-def tools_of(member: Member, name: str, space: ToothSpace | None) -> tuple[Tool, ...]:
+def tools_of(member: Member, space: ToothSpace | None) -> tuple[Tool, ...]:
     """The cutters of a member; those for single flanks need the tooth ``space``."""
     found = []
-    for cut in Cut.of(member, name):
+    for cut in Cut.of(member):
         blades = {flank: member.flank(flank) for flank in cut.flanks}
         cutter = cutter_of(member, cut.flanks, space)
         if space is None:

@@ -37,11 +37,11 @@ def cutting_program(
 
 def program_of(plan: CuttingPlan, program_name: str) -> str:
     """The text of a planned program. Raises InputError as the writer does."""
-    name, member, machine, job = plan.name, plan.member, plan.machine, plan.job
+    member, machine, job = plan.member, plan.machine, plan.job
     header = (
         f"gearmath {__version__} cutting program",
         f"set: {plain(plan.title)}",
-        member_note(member, name),
+        member_note(member),
         f"machine settings sha256: {settings_sha256(member)}",
         *tolerance_notes(plan),
         _path_note(plan),

@@ -37,7 +37,6 @@ def clear_height(member: Member, machine: MillingMachine, calibration: Calibrati
 
 def probed(
     member: Member,
-    name: str,
     machine: MillingMachine,
     calibration: Calibration,
     program_name: str,
@@ -46,9 +45,9 @@ def probed(
     around: Sequence[int],
 ) -> tuple[Targets, float, Room]:
     """The touches of a member, the :func:`clear_height` of sideways motion, and the room of the work, all checked."""
-    targets = probe_targets(member, name, machine, calibration, topography, pitch, around=around)
+    targets = probe_targets(member, machine, calibration, topography, pitch, around=around)
     level = clear_height(member, machine, calibration)
-    check_travel(TouchPattern.of(targets, member.teeth, machine).targets(), name, machine, level)
+    check_travel(TouchPattern.of(targets, member.teeth, machine).targets(), member.name, machine, level)
     room = room_of(member, machine, machine.fixture)
     check_home(room, machine, calibration.length + calibration.tip_radius - calibration.offset[2], program_name)
     return targets, level, room
@@ -139,6 +138,6 @@ def probing_program(
     Raises InputError for travel, room, and a name that the control refuses.
     """
     member = bevel_set.member(name)
-    targets, level, room = probed(member, name, machine, calibration, program_name, topography, pitch, around)
+    targets, level, room = probed(member, machine, calibration, program_name, topography, pitch, around)
     header = (*probing_notes(bevel_set, name, machine, calibration, len(targets), repeat), *writer.notes)
     return writer.text(program_name, header, targets, name, member.teeth, machine, calibration, level, room, repeat)

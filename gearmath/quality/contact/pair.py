@@ -64,7 +64,7 @@ def flanks_of(
     Raises InputError where it is not of the member, or holds no tooth in full.
     """
     member = pair.member(name)
-    evaluation = evaluate_member(file, member, name)
+    evaluation = evaluate_member(file, member)
     evaluation.closing.check_topography()
     found = {(name, flank): measured_flank(member, flank, file, evaluation) for flank in FLANKS}
     if all(one is None for one in found.values()):

@@ -32,11 +32,11 @@ def moved_to_mate(gear_set: BevelSet, name: str, measured: FlankFile, grid: Flan
     Raises InputError if the file is not of that member, ComputationError if its flanks do not meet those of the mate.
     """
     member, mate_name = gear_set.member(name), MEMBERS[1 - MEMBERS.index(name)]
-    check_belongs(member, name, measured)
+    check_belongs(member, measured)
     mate = gear_set.member(mate_name)
     moved = {}
     for flank in FLANKS:
-        target = flank_target(member, name, flank, measured)
+        target = flank_target(member, flank, measured)
         axial, radial = conjugate_places(
             gear_set, member, mate, target.nominal.point, target.nominal.normal, f"{name} {flank} flank"
         )

@@ -78,7 +78,6 @@ class MemberCorrection:
 
 def correct(
     member: Member,
-    name: str,
     measured: FlankFile,
     free: Sequence[str] | None = None,
     *,
@@ -111,15 +110,15 @@ def correct(
     Raises InputError if the file is not of this member or does not determine the settings, and ComputationError if the
     correction would make one of the flanks worse.
     """
-    check_belongs(member, name, measured)
+    check_belongs(member, measured)
     names = tuple(free) if free is not None else free_settings(member, higher_order)
     groups: list[tuple[str, ...]] = [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]
-    targets = {flank: flank_target(member, name, flank, measured, excluded=excluded) for flank in FLANKS}
-    at_mean, remarks = teeth_as_indexed_on_average(member, name, measured)
+    targets = {flank: flank_target(member, flank, measured, excluded=excluded) for flank in FLANKS}
+    at_mean, remarks = teeth_as_indexed_on_average(member, measured)
     if at_mean is not measured:
-        targets = {flank: flank_target(member, name, flank, at_mean, excluded=excluded) for flank in FLANKS}
+        targets = {flank: flank_target(member, flank, at_mean, excluded=excluded) for flank in FLANKS}
     for group in groups:
-        check_determined(name, group, [targets[flank] for flank in group], names)
+        check_determined(member.name, group, [targets[flank] for flank in group], names)
     if added:
         targets = {flank: target.plus(added[flank]) for flank, target in targets.items()}
     columns = rotation_columns(list(targets.values()), measured)
@@ -147,7 +146,7 @@ def correct(
             identified[group] = changed_settings(mine, names, noise, how)  # all of them may do what the few do not
         result = identified[group]
         found.reachable[group] = min(best.rms_after, result.rms_after)
-        refuse_worse(name, group, before, result, noise or 0.0)
+        refuse_worse(member.name, group, before, result, noise or 0.0)
         remaining = np.split(result.residual, np.cumsum([len(one) for one in before])[:-1])
         for k, (flank, target) in enumerate(zip(group, mine, strict=True)):
             _settle(found, member, flank, target, result.change(k))

@@ -64,12 +64,12 @@ class OwnIndex:
         return abs(self.angle) > max(_SIGNIFICANT * self.uncertainty, _LEAST / self.radius)
 
 
-def teeth_as_indexed_on_average(member: Member, name: str, file: FlankFile) -> tuple[FlankFile, tuple[str, ...]]:
+def teeth_as_indexed_on_average(member: Member, file: FlankFile) -> tuple[FlankFile, tuple[str, ...]]:
     """The file with the tooth measured in full of each flank where the others stand on average, and what was done.
 
     A flank of which no other teeth were measured stays as it is, and a sentence says so.
     """
-    rows = nominal_rows(file, member, name)
+    rows = nominal_rows(file, member)
     slope = kernel("motion_sensitivity")(rows.point, rows.normal)[0][:, _TURNING]
     remarks: list[str] = []
     alone: list[str] = []

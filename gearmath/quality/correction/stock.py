@@ -51,15 +51,15 @@ class Stock(Shown):
         return "how the blank must stand", figures
 
 
-def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = False, least: float = 0.0) -> Stock:
+def share_stock(member: Member, measured: FlankFile, advance: bool = False, least: float = 0.0) -> Stock:
     """The rotation that leaves the most stock where there is least; with ``advance`` after a shift that makes it even.
 
     ``measured`` is the probed blank, judged against the flanks to be finished. Raises InputError if the file is not of
     this member, not on its flanks, has no deviations or lacks a flank, and ComputationError if less than ``least`` [mm]
     remains somewhere.
     """
-    check_belongs(member, name, measured)
-    check_points(measured, nominal_rows(measured, member, name), member, name)
+    check_belongs(member, measured)
+    check_points(measured, nominal_rows(measured, member), member)
     kept = measured.pick(~np.isnan(measured.deviation))
     for flank in FLANKS:
         if not (kept.flank == flank).any():
@@ -83,7 +83,7 @@ def share_stock(member: Member, name: str, measured: FlankFile, advance: bool = 
     k = int(np.argmin(stock))
     if stock[k] < least:
         raise ComputationError(
-            f"{name}: does not clean up: {stock[k] * 1000:.1f} um remain on the {kept.flank[k]} flank, tooth "
+            f"{member.name}: does not clean up: {stock[k] * 1000:.1f} um remain on the {kept.flank[k]} flank, tooth "
             f"{kept.tooth[k]}, row {kept.row[k]}, col {kept.col[k]}, where {least * 1000:g} um are needed"
         )
     return found

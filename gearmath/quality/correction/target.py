@@ -26,12 +26,7 @@ _SAME_POINT = 0.01
 
 
 def flank_target(
-    member: Member,
-    name: str,
-    flank: str,
-    measured: FlankFile,
-    tooth: int | None = None,
-    excluded: np.ndarray | None = None,
+    member: Member, flank: str, measured: FlankFile, tooth: int | None = None, excluded: np.ndarray | None = None
 ) -> FlankTarget:
     """One flank of a file with the nominal points of the set, of a tooth that has most points if none is given.
 
@@ -56,7 +51,7 @@ def flank_target(
     order = np.argsort(place)
     order = order[kept[order]]
     at = place[order]
-    nominal = solve_flank(member, name, flank, file_grid(measured, member, flank, tooth))
+    nominal = solve_flank(member, flank, file_grid(measured, member, flank, tooth))
     deviation = points.deviation[order]
     _check_places(flank, points.point[order], deviation, nominal, at, int(points.tooth[0]) / member.teeth, columns)
     used = np.zeros(rows * columns, dtype=bool)

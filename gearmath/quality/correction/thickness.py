@@ -27,7 +27,7 @@ MOST = 0.5
 
 
 def with_thickness(
-    member: Member, name: str, settings: dict[str, np.ndarray], change: float, by: By = "work_rotation_offset"
+    member: Member, settings: dict[str, np.ndarray], change: float, by: By = "work_rotation_offset"
 ) -> dict[str, np.ndarray]:
     """Settings (12,) of both flanks that leave the teeth thicker by ``change`` [mm] than ``settings`` do.
 
@@ -37,8 +37,10 @@ def with_thickness(
     if not abs(change) <= MOST:
         raise InputError(f"thickness = {change:g} mm: must lie between -{MOST} and {MOST} mm")
     if by == "work_rotation_offset" and member.cutting == "completing":
-        raise InputError(f"{name}: one cut makes both flanks, so that thickness can only come from the sliding_base")
-    targets = {flank: _reference(member, name, flank) for flank in FLANKS}
+        raise InputError(
+            f"{member.name}: one cut makes both flanks, so that thickness can only come from the sliding_base"
+        )
+    targets = {flank: _reference(member, flank) for flank in FLANKS}
     row = SETTINGS.index(by)
     groups = [(flank,) for flank in FLANKS] if by == "work_rotation_offset" else [FLANKS]
     found = dict(settings)
@@ -57,18 +59,18 @@ def with_thickness(
                 break
             shift += (wanted - gained) / rate
         else:
-            raise ComputationError(f"{name}: no {by} makes the teeth thicker by {change * 1000:g} um")
+            raise ComputationError(f"{member.name}: no {by} makes the teeth thicker by {change * 1000:g} um")
         for flank in group:
             found[flank] = settings[flank].copy()
             found[flank][row] += shift
     return found
 
 
-def _reference(member: Member, name: str, flank: str) -> FlankTarget:
+def _reference(member: Member, flank: str) -> FlankTarget:
     """The middle of a flank as a target of one point."""
     grid = blank_grid(member, 3, 3)
     middle = Grid(grid.axial[1:2, 1:2], grid.radial[1:2, 1:2])
-    return replace(target_of(member, flank, solve_flank(member, name, flank, middle)), root=None)
+    return replace(target_of(member, flank, solve_flank(member, flank, middle)), root=None)
 
 
 def _vector(target: FlankTarget, settings: np.ndarray) -> np.ndarray:

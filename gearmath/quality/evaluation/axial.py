@@ -56,7 +56,7 @@ class Axial:
         }
 
 
-def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, columns: np.ndarray) -> Axial:
+def axial_shift(file: FlankFile, member: Member, rows: NominalRows, columns: np.ndarray) -> Axial:
     """What the deviations of a file say of the axial position; ``columns`` (n,6) are those of (18.2)."""
     used = np.isfinite(file.deviation)
     axial, lever, clamping = columns[used, 2], columns[used, 5], columns[used][:, [0, 1, 3, 4]]
@@ -73,7 +73,7 @@ def axial_shift(file: FlankFile, member: Member, name: str, rows: NominalRows, c
     uncertainty = math.sqrt(float(rest @ rest) / spare / size) if spare > 0 else math.nan
     share = {
         TWIN: 1.0,
-        "other settings": _by_settings(file, member, name, rows, used, axial),
+        "other settings": _by_settings(file, member, rows, used, axial),
         "clamping": _share(clamping, axial),
     }
     before, after = values - _projected(turning, values), float(rest @ rest)
@@ -110,11 +110,11 @@ def explained_by(column: np.ndarray, file: FlankFile, columns: np.ndarray) -> Ex
 
 
 def _by_settings(
-    file: FlankFile, member: Member, name: str, rows: NominalRows, used: np.ndarray, axial: np.ndarray
+    file: FlankFile, member: Member, rows: NominalRows, used: np.ndarray, axial: np.ndarray
 ) -> float | None:
     """How much of an axial shift the other settings imitate; each flank has its own where it has its own pass."""
     try:
-        require_plain(member, name, "the sensitivity to settings")
+        require_plain(member, "the sensitivity to settings")
     except InputError:
         return None
     blocks = []
@@ -129,7 +129,7 @@ def _by_settings(
             return None
         (rates,) = kernel("setting_sensitivity")(*found.contact.T, settings, SIDES[flank])
         block = np.zeros((len(here), len(_OTHERS)))
-        block[here] = rates[of.ravel()][:, [SETTINGS.index(name) for name in _OTHERS]]
+        block[here] = rates[of.ravel()][:, [SETTINGS.index(other) for other in _OTHERS]]
         blocks.append(block)
     shared = member.cutting == "completing"
     return _share(blocks[0] + blocks[1] if shared else np.hstack(blocks), axial)

@@ -34,7 +34,7 @@ _FACTOR = 0.1
 WRONG_SET_UP = "work offset or tool length, or another --machine or --calibration than that of the program"
 
 
-def check_points(file: FlankFile, rows: NominalRows, member: Member, name: str) -> None:
+def check_points(file: FlankFile, rows: NominalRows, member: Member) -> None:
     """Raise InputError, with the likeliest cause, where a row is none of its nominal point of a member.
 
     The normal must be the nominal one, the measured point lie on it, and as far along it as the deviation says.
@@ -46,7 +46,7 @@ def check_points(file: FlankFile, rows: NominalRows, member: Member, name: str) 
         k = int(np.argmax(apart > SAME_POINT))
         raise InputError(
             f"{_place(file, k)}: the measured point lies {apart[k]:.4f} mm beside the nominal normal, the limit is "
-            f"{SAME_POINT} mm; {_likeliest_cause(file, rows, apart, member, name)}"
+            f"{SAME_POINT} mm; {_likeliest_cause(file, rows, apart, member)}"
         )
     turned_away = np.einsum("ij,ij->i", file.normal, rows.normal) < SAME_NORMAL
     if turned_away.any():
@@ -116,7 +116,7 @@ def _factor(file: FlankFile, along: np.ndarray) -> str:
     return ""
 
 
-def _likeliest_cause(file: FlankFile, rows: NominalRows, apart: np.ndarray, member: Member, name: str) -> str:
+def _likeliest_cause(file: FlankFile, rows: NominalRows, apart: np.ndarray, member: Member) -> str:
     """What would make most of the points fit that lie (n,) [mm] beside their normals."""
     fits = {
         "the numbers are inches: convert the file to mm": file.point * INCH,
@@ -131,7 +131,7 @@ def _likeliest_cause(file: FlankFile, rows: NominalRows, apart: np.ndarray, memb
         return f"nearly all points are, by {np.median(measured):.3f} mm in the middle: {WRONG_SET_UP}"
     shift = np.linalg.norm(file.point - rows.point, axis=1)
     for words, other in _counted_otherwise(file, member):
-        point = nominal_rows(other, member, name).point
+        point = nominal_rows(other, member).point
         fit = np.mean(np.linalg.norm(file.point - point, axis=1) < _SET_UP)
         if fit >= _FIT and fit > np.mean(shift < _SET_UP):
             return words
@@ -153,12 +153,14 @@ def _counted_otherwise(file: FlankFile, member: Member) -> Iterator[tuple[str, F
     yield "teeth are counted from 1; they must be from 0", replace(file, tooth=(file.tooth - 1) % z)
 
 
-def check_belongs(member: Member, name: str, measured: FlankFile) -> None:
+def check_belongs(member: Member, measured: FlankFile) -> None:
     """Raise InputError unless the file is a measurement of this member of this set."""
-    if measured.member != name:
-        raise InputError(f"member = {measured.member!r} in the measured file: must be {name!r}")
+    if measured.member != member.name:
+        raise InputError(f"member = {measured.member!r} in the measured file: must be {member.name!r}")
     if measured.header["member_teeth"] != str(member.teeth):
-        raise InputError(f"member_teeth = {measured.header['member_teeth']}: the {name} of the set has {member.teeth}")
+        raise InputError(
+            f"member_teeth = {measured.header['member_teeth']}: the {member.name} of the set has {member.teeth}"
+        )
     if measured.header["settings_sha256"] != design_sha256(member):
         raise InputError(
             f"settings_sha256 = {measured.header['settings_sha256'][:12]}...: the file was measured against other "

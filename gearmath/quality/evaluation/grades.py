@@ -14,7 +14,6 @@ from gearmath.specs.bevel_set import FLANKS, Member
 
 def grade_member(
     member: Member,
-    name: str,
     pitches: Mapping[str, Pitch],
     runout: Runout | None,
     closing: Closing,
@@ -33,7 +32,7 @@ def grade_member(
     if not pitches:
         return None
     if doubt is not None:
-        return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), doubt))
+        return judge(member, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), doubt))
     whole = {flank: pitch for flank, pitch in pitches.items() if pitch.withheld is None}
     of_flanks = {flank: {"f_pt": pitch.largest_single, "F_p": pitch.total} for flank, pitch in whole.items()}
     measured, withheld = {}, {}
@@ -56,11 +55,11 @@ def grade_member(
         )
     else:
         measured["F_r"] = runout.total
-    verdict = judge(member, name, measured, withheld, of_flanks)
+    verdict = judge(member, measured, withheld, of_flanks)
     grade, drift = verdict.grades.get("F_p"), closing.arc * 1000
     if closing.kind == "steady" and grade is not None and drift > (limit := _tolerance(verdict, "F_p", grade)):
         why = f"the drift of {drift:.1f} um that was taken out is larger than F_p {limit:g} um of grade {grade}"
-        return judge(member, name, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), why))
+        return judge(member, {}, dict.fromkeys(("f_pt", "F_p", "F_r"), why))
     of_pitch = max((value for value in uncertainties.values() if math.isfinite(value)), default=math.nan)
     unsure = {"f_pt": of_pitch, "F_p": of_pitch, "F_r": math.nan if runout is None else runout.uncertainty}
     # of a parabola over all teeth, the steepest part lies between two of them
@@ -74,7 +73,7 @@ def grade_member(
             withheld[key] = why
             del measured[key]
             of_flanks = {flank: {k: v for k, v in one.items() if k != key} for flank, one in of_flanks.items()}
-    return judge(member, name, measured, withheld, of_flanks)
+    return judge(member, measured, withheld, of_flanks)
 
 
 def _too_unsure(verdict: Verdict, key: str, u: float) -> str:

@@ -42,7 +42,7 @@ def measured_run(
     missing = missing_touches(found, member.teeth, grid.shape)
     check_whole(raw, run, found, missing)
     with about(raw):
-        check_on_grid(found, member, found.member, grid)
-        doubt = check_search_lines(found, member, found.member, grid, machine, calibration)
-        file = measured_member(found, member, found.member, machine, calibration)
+        check_on_grid(found, member, grid)
+        doubt = check_search_lines(found, member, grid, machine, calibration)
+        file = measured_member(found, member, machine, calibration)
     return MeasuredRun(found, grid, file, missing, missed_points(found), doubt or "")

@@ -178,7 +178,6 @@ STAGES = 4
 def evaluate_member(
     file: FlankFile,
     member: Member,
-    name: str,
     registered: bool = True,
     progress: Callable[[int], object] = lambda _: None,
     rotated: bool = True,
@@ -190,9 +189,9 @@ def evaluate_member(
     in common. Raises InputError if the file is not of this member, or not in mm on its flanks, if neither a tooth in
     full nor pitch was measured, or if its phase is not as its header says.
     """
-    check_belongs(member, name, file)
-    check_points(file, nominal_rows(file, member, name), member, name)
-    complete, absent = completed(file, member, name)
+    check_belongs(member, file)
+    check_points(file, nominal_rows(file, member), member)
+    complete, absent = completed(file, member)
     closing = close_run(complete, member.teeth)
     outliers = find_outliers(closing.straightened(complete), member.teeth)
     progress(1)
@@ -207,7 +206,7 @@ def evaluate_member(
             untold = [untold_drift(whole, member.teeth, closing.course)]
             if closing.doubt is not None:
                 untold.append(closing.doubt[whole.tooth < member.teeth])
-            seat = register(measured, member, name, np.hstack(untold))
+            seat = register(measured, member, np.hstack(untold))
             remarks += (*seat.remarks, *([seat.remark] if seat.remark else []))
         except InputError as error:
             remarks += (f"not registered: {error}",)
@@ -217,7 +216,7 @@ def evaluate_member(
     noise = stated_noise(file) if seat is None else seat.noise
     if rotated:
         try:
-            turn = common_rotation(judged, member, name, noise)
+            turn = common_rotation(judged, member, noise)
             judged = turn.file
         except InputError as error:
             remarks += (f"rotation of the work not taken out: {error}",)
@@ -232,7 +231,7 @@ def evaluate_member(
     if closing.topography_withheld:
         remarks += (f"no tooth thickness: {closing.topography_withheld}",)
     unknown = each_zeroed or closing.topography_withheld
-    thickness = None if unknown else evaluate_thickness(at_one_place(judged, member, name), member.teeth)
+    thickness = None if unknown else evaluate_thickness(at_one_place(judged, member), member.teeth)
     cut = cut_off(file)
     flanks = {flank: _without_maxima(figures, cut, closing) for flank, figures in flanks.items()}
     spaces = cut or closing.spaces_withheld
@@ -242,12 +241,12 @@ def evaluate_member(
     suspected = Suspicions((), None)
     if not closing.topography_withheld:
         in_full = {flank: figures.topographies for flank, figures in flanks.items()}
-        suspected = suspicions(file, judged, member, name, in_full, seat)
+        suspected = suspicions(file, judged, member, in_full, seat)
     sure, rounded = pitch_uncertainties(judged, member.teeth, noise), file_resolution(file)
-    verdict = grade_member(member, name, pitches, runout, closing, sure, suspected.no_grade, rounded)
+    verdict = grade_member(member, pitches, runout, closing, sure, suspected.no_grade, rounded)
     progress(1)
     return MemberEvaluation(
-        name,
+        member.name,
         judged,
         flanks,
         as_measured,

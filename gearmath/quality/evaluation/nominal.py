@@ -34,7 +34,7 @@ class NominalRows:
     tooth: np.ndarray
 
 
-def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
+def nominal_rows(file: FlankFile, member: Member) -> NominalRows:
     """The nominal point and normal of every row, in the work frame.
 
     Raises ComputationError if the grid does not lie on the flank.
@@ -51,7 +51,7 @@ def nominal_rows(file: FlankFile, member: Member, name: str) -> NominalRows:
             else:
                 grid = file_grid(file, member, flank)
                 place = file.row[here] * columns + file.col[here]
-            solved = solve_flank(member, name, flank, grid)
+            solved = solve_flank(member, flank, grid)
             point[here] = turned(solved.point[place], turn[here])
             normal[here] = turned(solved.normal[place], turn[here])
     return NominalRows(point, normal, turn, tooth)
@@ -97,7 +97,7 @@ def with_deviations(file: FlankFile, rows: NominalRows, deviation: np.ndarray) -
     return replace(file, point=rows.point + np.nan_to_num(deviation)[:, None] * rows.normal, deviation=deviation)
 
 
-def at_one_place(file: FlankFile, member: Member, name: str) -> FlankFile:
+def at_one_place(file: FlankFile, member: Member) -> FlankFile:
     """The reference points of a file whose points have their own places, both flanks brought to the same place.
 
     Between flanks and teeth these places differ by what the measuring machine was off the commanded ones: deviations
@@ -112,14 +112,14 @@ def at_one_place(file: FlankFile, member: Member, name: str) -> FlankFile:
     for flank in np.unique(points.flank):
         here = points.flank == flank
         turn = 2 * math.pi * (points.tooth[here] % member.teeth) / member.teeth
-        solved = solve_flank(member, name, str(flank), Grid(np.array([[axial]]), np.array([[radial]])))
+        solved = solve_flank(member, str(flank), Grid(np.array([[axial]]), np.array([[radial]])))
         point[here] = turned(np.repeat(solved.point, len(turn), axis=0), turn)
         normal[here] = turned(np.repeat(solved.normal, len(turn), axis=0), turn)
     moved = np.nan_to_num(points.deviation)[:, None] * normal
     return replace(points, point=point + moved, normal=normal)
 
 
-def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tuple[str, ...]]:
+def completed(file: FlankFile, member: Member) -> tuple[FlankFile, tuple[str, ...]]:
     """The file with the points that are missing in grids measured nearly in full, nominal and silent; and who they are.
 
     A tooth is taken as measured in full where no more than a fifth of its points are missing.
@@ -137,12 +137,12 @@ def completed(file: FlankFile, member: Member, name: str) -> tuple[FlankFile, tu
                 if has_own_places(file):
                     grid = file_grid(file, member, flank, int(tooth))
                     nowhere[:, 0], nowhere[:, 2] = grid.radial[row, col], grid.axial[row, col]
-                missing.append(flank_file(file.header, name, flank, int(tooth), row, col, nowhere, nowhere))
+                missing.append(flank_file(file.header, member.name, flank, int(tooth), row, col, nowhere, nowhere))
                 remarks += [
                     f"{flank} flank, tooth {tooth}, row {r}, col {c}: not measured; left out" for r, c in absent
                 ]
     if not missing:
         return file, ()
     added = join(missing)
-    nominal = nominal_rows(added, member, name)
+    nominal = nominal_rows(added, member)
     return join([file, replace(added, point=nominal.point, normal=nominal.normal)]), tuple(remarks)

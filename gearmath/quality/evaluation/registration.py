@@ -139,15 +139,15 @@ class Registration:
         }
 
 
-def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | None = None) -> Registration:
+def register(file: FlankFile, member: Member, untold: np.ndarray | None = None) -> Registration:
     """The clamping of a measured member, and its file without it.
 
     Points without a deviation are carried along and take no part. ``untold`` (n,q) are patterns that the deviations may
     have besides, such as drift that is not known: they are left free, and stay in. Raises InputError for too few teeth,
     a single flank, or points that do not tell the eccentricity; ComputationError if no clamping explains them.
     """
-    rows = nominal_rows(file, member, name)
-    check_points(file, rows, member, name)
+    rows = nominal_rows(file, member)
+    check_points(file, rows, member)
     check_teeth(file, rows, member)
     used = np.isfinite(file.deviation)
     columns = kernel("motion_sensitivity")(rows.point, rows.normal)[0]
@@ -173,7 +173,7 @@ def register(file: FlankFile, member: Member, name: str, untold: np.ndarray | No
         np.nan_to_num(file.deviation - deviation),
         gain,
         columns[:, SEAT],
-        axial_shift(registered, member, name, rows, columns),
+        axial_shift(registered, member, rows, columns),
         model.remarks,
     )
 

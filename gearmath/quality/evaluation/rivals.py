@@ -25,7 +25,7 @@ _NO_RIVALS = ("machine_center_to_crossing_point", "work_rotation_offset")
 _TWIN, _DEPTH = (SETTINGS.index(key) for key in ("machine_center_to_crossing_point", "sliding_base"))
 
 
-def rival_columns(file: FlankFile, member: Member, name: str) -> Iterator[tuple[str, np.ndarray]]:
+def rival_columns(file: FlankFile, member: Member) -> Iterator[tuple[str, np.ndarray]]:
     """What it is, and the column (n,) that it makes of the deviations of a file, for an error of each setting alone.
 
     Of settings of the machine and of blades, alike on both flanks; where each flank has a cut of its own, also on one
@@ -37,7 +37,7 @@ def rival_columns(file: FlankFile, member: Member, name: str) -> Iterator[tuple[
         here = file.flank == flank
         for tooth in np.unique(file.tooth[here]):
             rows = here & (file.tooth == tooth)
-            found = _rates(file, member, name, flank, int(tooth))
+            found = _rates(file, member, flank, int(tooth))
             rates[rows] = found[file.row[rows] * grid_shape(file)[1] + file.col[rows]]
         tilt = member.flank(flank).nominal.rad("machine_root_angle")
         along_x[here] = rates[here, _TWIN] + math.sin(tilt) * rates[here, _DEPTH]
@@ -52,14 +52,14 @@ def rival_columns(file: FlankFile, member: Member, name: str) -> Iterator[tuple[
     yield "the tip radius", np.ones(len(file))
 
 
-def _rates(file: FlankFile, member: Member, name: str, flank: str, tooth: int) -> np.ndarray:
+def _rates(file: FlankFile, member: Member, flank: str, tooth: int) -> np.ndarray:
     """Derivatives (grid,12) of the deviations on the grid of a tooth by the settings."""
     spec = member.flank(flank)
-    nominal = by_foot(spec, solve_flank(member, name, flank, file_grid(file, member, flank, tooth)))
+    nominal = by_foot(spec, solve_flank(member, flank, file_grid(file, member, flank, tooth)))
     none = np.zeros(len(nominal.point))
     how, blade = generation_of(member, flank), (nominal_curvature(spec), spec.blade_reference_height)
     target = FlankTarget(how, nominal, none, *blade)
     _, rates, failed = located(target, target.vector, moving=False)
     if failed.any():
-        raise InputError(f"{name} {flank} flank: a nominal point is not found again")
+        raise InputError(f"{member.name} {flank} flank: a nominal point is not found again")
     return rates[:, : len(SETTINGS)]

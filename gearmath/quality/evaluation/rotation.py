@@ -70,14 +70,14 @@ class Rotation:
         }
 
 
-def common_rotation(file: FlankFile, member: Member, name: str, noise: float = math.nan) -> Rotation:
+def common_rotation(file: FlankFile, member: Member, noise: float = math.nan) -> Rotation:
     """The rotation of a measured member that is common to both flanks, and its file without it.
 
     ``noise`` [mm] is the standard deviation of one point. Points without a deviation are carried along. Raises
     InputError where no tooth has both flanks at one place, ComputationError if no rotation explains them.
     """
     place, used = _pairs(file)
-    rows = nominal_rows(file, member, name)
+    rows = nominal_rows(file, member)
     column = kernel("motion_sensitivity")(rows.point, rows.normal)[0][:, _TURNING]
     radius = float(np.hypot(*rows.point[np.argmax(used), :2]))
     used &= np.isin(file.tooth, _alike(file.tooth[used], radius * file.deviation[used] / column[used]))

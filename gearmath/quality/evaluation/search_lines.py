@@ -38,14 +38,14 @@ _FITS, _SMALL = 30, 1e-6
 
 
 def check_search_lines(
-    touches: Touches, member: Member, name: str, grid: Grid, machine: MillingMachine, calibration: Calibration
+    touches: Touches, member: Member, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> str:
     """What to say of touches that lie beside their lines all alike, but not far; or nothing.
 
     Raises InputError where they are far off alike, with the offset, or where a single one is.
     """
     touches = touches.pick(touches.triggered)
-    start, end = _lines(touches, member, name, grid, machine, calibration)
+    start, end = _lines(touches, member, grid, machine, calibration)
     turned = touches.axes[:, 3:] - start[:, 3:]
     turned -= 2 * math.pi * np.round(turned / (2 * math.pi))
     said = _check_turned(touches, turned)
@@ -80,14 +80,14 @@ def check_search_lines(
 
 
 def _lines(
-    touches: Touches, member: Member, name: str, grid: Grid, machine: MillingMachine, calibration: Calibration
+    touches: Touches, member: Member, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> tuple[np.ndarray, np.ndarray]:
     """Positions (n,5) at which the search for each touch begins and ends, A as in the space of its tooth."""
     start, end = np.empty((2, len(touches), 5))
     place = touches.row * grid.shape[1] + touches.col
     for flank in (flank for flank in FLANKS if (touches.flank == flank).any()):
         here = touches.flank == flank
-        planned = targets_of_space(member, name, flank, grid, machine, calibration)
+        planned = targets_of_space(member, flank, grid, machine, calibration)
         start[here], end[here] = planned.start[place[here]], planned.end[place[here]]
     turn = 2 * math.pi * touches.tooth / member.teeth
     start[:, 3] += turn

@@ -63,12 +63,11 @@ def suspicions(
     raw: FlankFile,
     file: FlankFile,
     member: Member,
-    name: str,
     flanks: dict[str, tuple[Topography, ...]],
     seat: Registration | None,
 ) -> Suspicions:
     """What a measurement looks like: ``raw`` as read, ``file`` without clamping and rotation, ``flanks`` in full."""
-    axial = tuple(_axial(_in_full(file, flanks), member, name))
+    axial = tuple(_axial(_in_full(file, flanks), member))
     too_far = None if axial else _beyond_backlash(file, member, flanks)
     offset = () if axial else tuple(_offset(flanks, too_far))
     scatter = min((_noise(each[0]) for each in flanks.values() if each), default=math.nan)
@@ -126,14 +125,14 @@ def _in_full(file: FlankFile, flanks: dict[str, tuple[Topography, ...]]) -> Flan
     return file.pick(keep)
 
 
-def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
+def _axial(file: FlankFile, member: Member) -> Iterator[str]:
     """Whether most of the form is what a shift along the axis of the work does."""
-    rows = nominal_rows(file, member, name)
+    rows = nominal_rows(file, member)
     used = np.isfinite(file.deviation)
     if any((used & (file.flank == flank)).sum() < _LEAST_POINTS for flank in FLANKS):
         return
     columns = kernel("motion_sensitivity")(rows.point, rows.normal)[0]
-    found = axial_shift(file, member, name, rows, columns)
+    found = axial_shift(file, member, rows, columns)
     sure = abs(found.shift) / found.uncertainty if found.uncertainty > 0 else math.inf
     if not (abs(found.shift) >= _LEAST_AXIAL and sure >= _SIGNIFICANT):
         return
@@ -146,7 +145,7 @@ def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
         )
     else:
         return
-    rivals = _rivals(file, member, name, columns, found.explains >= _EXPLAINS)
+    rivals = _rivals(file, member, columns, found.explains >= _EXPLAINS)
     if rivals is None:
         return
     also = f", and one of {' or '.join(rivals)} nearly so" if rivals else ""
@@ -156,7 +155,7 @@ def _axial(file: FlankFile, member: Member, name: str) -> Iterator[str]:
     )
 
 
-def _rivals(file: FlankFile, member: Member, name: str, columns: np.ndarray, by_form: bool) -> list[str] | None:
+def _rivals(file: FlankFile, member: Member, columns: np.ndarray, by_form: bool) -> list[str] | None:
     """What explains a file nearly as well as an axial shift, column 2 of (18.2); None where something does better.
 
     ``by_form``, of the form; else of form and thickness together, where its own sizes agree on both.
@@ -164,7 +163,7 @@ def _rivals(file: FlankFile, member: Member, name: str, columns: np.ndarray, by_
     axial = explained_by(columns[:, 2], file, columns)
     near: dict[str, float] = {}
     try:
-        others = list(rival_columns(file, member, name))
+        others = list(rival_columns(file, member))
     except InputError:
         return None
     for key, column in others:

@@ -109,7 +109,7 @@ def rounded(value: float) -> float:
     return round(math.floor(value / step + 0.5) * step, 1)
 
 
-def gear_data(member: Member, name: str) -> GearData:
+def gear_data(member: Member) -> GearData:
     """Teeth, module and tolerance diameter of a member; the spiral angle is the mean of both flanks at the mean point.
 
     Raises ComputationError where a flank does not reach the mean point.
@@ -121,7 +121,7 @@ def gear_data(member: Member, name: str) -> GearData:
     for flank in FLANKS:
         points, residual = nominal_points(member, flank, place)
         if not residual[0] <= TOLERANCE:
-            raise ComputationError(f"{name} {flank} flank: it does not reach the mean point")
+            raise ComputationError(f"{member.name} {flank} flank: it does not reach the mean point")
         angle, module = kernel("mean_module")(delta, distance, member.teeth, points.point[0], points.normal[0])
         angles.append(float(angle))
         modules.append(float(module))
@@ -131,7 +131,6 @@ def gear_data(member: Member, name: str) -> GearData:
 
 def judge(
     member: Member,
-    name: str,
     measured: dict[str, float],
     withheld: Mapping[str, str] = MappingProxyType({}),
     flanks: Mapping[str, dict[str, float]] = MappingProxyType({}),
@@ -141,7 +140,7 @@ def judge(
     ``withheld`` are those that are not known, and why; ``flanks`` those of one flank alone. Outside of the scope there
     are no grades, and the remark says why.
     """
-    data = gear_data(member, name)
+    data = gear_data(member)
     values = {key: value * 1000 for key, value in measured.items()}
     if data.outside is not None:
         return Verdict(data, values, {}, f"no grade: {data.outside}", dict(withheld), {})

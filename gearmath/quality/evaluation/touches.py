@@ -24,9 +24,7 @@ _SAME_POINT = 3.0
 _SAME_TOUCH = 0.02
 
 
-def measured_member(
-    touches: Touches, member: Member, name: str, machine: MillingMachine, calibration: Calibration
-) -> FlankFile:
+def measured_member(touches: Touches, member: Member, machine: MillingMachine, calibration: Calibration) -> FlankFile:
     """The corrected contact points (15.5) of the touches, with their deviations from the nominal flanks.
 
     Points come in the order in which they were touched; tooth z is tooth 0 again. The touches of one point are
@@ -37,26 +35,26 @@ def measured_member(
     ``search_lines`` tells more of their place.
     """
     grid = blank_grid(member)
-    check_on_grid(touches, member, name, grid)
+    check_on_grid(touches, member, grid)
     tip, _ = kernel("probe_tip")(
         touches.axes, probe_height(machine, calibration), calibration.tip_offset, machine.pivot
     )
-    point, normal = _nominal(touches, member, name, grid)
+    point, normal = _nominal(touches, member, grid)
     # at the origin of the work, without offsets: the normal in the axes of the machine
     (machine_normal,) = kernel("probe_axes")(normal, *touches.axes[:, 3:].T, 0.0, np.zeros(3), np.zeros(3))
     (radius,) = kernel("effective_radius")(machine_normal[:, :3], calibration.tip_radius, lobing(calibration))
     contact, deviation = kernel("touched_point")(tip, radius, point, normal)
     met = touches.triggered
     _check_place((contact - point)[met], touches.pick(met))
-    header = {**flank_header(member, name, grid.shape), "tip_radius_mm": f"{calibration.tip_radius:g}"}
+    header = {**flank_header(member, grid.shape), "tip_radius_mm": f"{calibration.tip_radius:g}"}
     contact, deviation = np.where(met[:, None], contact, point), np.where(met, deviation, np.nan)
     return _averaged(header, touches, contact, normal, deviation)
 
 
-def check_on_grid(touches: Touches, member: Member, name: str, grid: Grid) -> None:
+def check_on_grid(touches: Touches, member: Member, grid: Grid) -> None:
     """Raise InputError for touches of another member, or off its teeth and its grid."""
-    if touches.member != name:
-        raise InputError(f"the touches are of the {touches.member}, not of the {name}")
+    if touches.member != member.name:
+        raise InputError(f"the touches are of the {touches.member}, not of the {member.name}")
     rows, columns = grid.shape
     for what, values, last in (
         ("row", touches.row, rows - 1),
@@ -64,17 +62,19 @@ def check_on_grid(touches: Touches, member: Member, name: str, grid: Grid) -> No
         ("tooth", touches.tooth, member.teeth),
     ):
         if (values > last).any():
-            raise InputError(f"{what} = {int(values.max())}: the {name} and its grid {rows}x{columns} end at {last}")
+            raise InputError(
+                f"{what} = {int(values.max())}: the {member.name} and its grid {rows}x{columns} end at {last}"
+            )
 
 
-def _nominal(touches: Touches, member: Member, name: str, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+def _nominal(touches: Touches, member: Member, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """Points and normals (n,3) that the touches were meant for."""
     point, normal = np.empty((2, len(touches), 3))
     turn = 2 * math.pi * touches.tooth / member.teeth
     place = touches.row * grid.shape[1] + touches.col
     for flank in (flank for flank in FLANKS if (touches.flank == flank).any()):
         here = touches.flank == flank
-        nominal = solve_flank(member, name, flank, grid)
+        nominal = solve_flank(member, flank, grid)
         point[here], normal[here] = nominal.point[place[here]], nominal.normal[place[here]]
     return turned(point, turn), turned(normal, turn)
 

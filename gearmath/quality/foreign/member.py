@@ -135,13 +135,13 @@ def foreign_file(
         doubts += [one for one in told if one]
     files, remarks = [], []
     for one, lattice, turn in zip(laid, lattices, turns, strict=True):
-        file, found = _file(one, lattice, member, name)
+        file, found = _file(one, lattice, member)
         files.append(file)
         words = (*found, check_normals(one, frame, member, turn))
         remarks += [f"{one.part.name}: {each}" for each in words if each]
         progress(1)
     zeroed = phase == "each" or (phase == "common" and len({part.flank for part in parts}) == 1)
-    header = _header(member, name, files, frame, zeroed)
+    header = _header(member, files, frame, zeroed)
     joined = join([replace(file, header=header) for file in files])
     doubts[:0] = gaps
     return Foreign(joined, tuple(turns), (*doubts, *remarks), tuple(doubts), tuple(gaps))
@@ -238,23 +238,21 @@ def _smooth(across: np.ndarray, up: np.ndarray, deviation: np.ndarray, place: np
     return float(np.linalg.lstsq(scaled, deviation[near] * weight, rcond=1e-9)[0][0])
 
 
-def _file(one: Laid, lattice: Lattice | None, member: Member, name: str) -> tuple[FlankFile, list[str]]:
+def _file(one: Laid, lattice: Lattice | None, member: Member) -> tuple[FlankFile, list[str]]:
     """The file of one part without its header, and how it came by its grid."""
     part, angle = one.part, 2 * math.pi * one.part.tooth / member.teeth
     found: list[str] = []
     if lattice is None:
-        row, col, foot, normal, deviation, found = _on_grid(one, member, name)
+        row, col, foot, normal, deviation, found = _on_grid(one, member)
     else:
         order = np.lexsort((lattice.col, lattice.row))
         row, col = lattice.row[order], lattice.col[order]
         foot, normal, deviation = one.foot[order], one.normal[order], one.deviation[order]
     point = turned(foot + deviation[:, None] * normal, angle)
-    return flank_file({}, name, part.flank, part.tooth, row, col, point, turned(normal, angle), deviation), found
+    return flank_file({}, member.name, part.flank, part.tooth, row, col, point, turned(normal, angle), deviation), found
 
 
-def _on_grid(
-    one: Laid, member: Member, name: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[str]]:
+def _on_grid(one: Laid, member: Member) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, list[str]]:
     """Rows, columns, feet, normals and deviations on a grid of even margins, between the points of a part."""
     across, up = fractions(one, member)
     off = standing_out(one, member)[one.kept] != 0.0
@@ -270,7 +268,7 @@ def _on_grid(
             f"{one.part.name}: its {len(across)} points form no grid, and cover too little of the {one.part.flank} "
             f"flank for one of {_ROWS}x{_COLUMNS} between them"
         )
-    nominal = solve_flank(member, name, one.part.flank, blank_grid(member, _ROWS, _COLUMNS, margin))
+    nominal = solve_flank(member, one.part.flank, blank_grid(member, _ROWS, _COLUMNS, margin))
     deviation = np.array([_smooth(across[~off], up[~off], one.deviation[~off], each) for each in place])
     row, col = (each.ravel() for each in np.indices((_ROWS, _COLUMNS)))
     words = f"{len(across)} points form no grid that all share: deviations on {_ROWS}x{_COLUMNS}, margins {margin:g}"
@@ -278,17 +276,17 @@ def _on_grid(
     return row, col, nominal.point, nominal.normal, deviation, [words, *lost]
 
 
-def _header(member: Member, name: str, files: Sequence[FlankFile], frame: Frame, zeroed: bool) -> dict[str, str]:
+def _header(member: Member, files: Sequence[FlankFile], frame: Frame, zeroed: bool) -> dict[str, str]:
     rows, columns = (int(max(getattr(file, index).max() for file in files)) + 1 for index in ("row", "col"))
-    return flank_header(member, name, (rows, columns)) | {
-        "margins": _margins(member, name, files, rows, columns),
+    return flank_header(member, (rows, columns)) | {
+        "margins": _margins(member, files, rows, columns),
         "phase_zeroed": "true" if zeroed else "false",
         "tip_radius_mm": f"{frame.tip_radius:g}",
         PLANNED: f"{sum(map(len, files))} points",
     }
 
 
-def _margins(member: Member, name: str, files: Sequence[FlankFile], rows: int, columns: int) -> str:
+def _margins(member: Member, files: Sequence[FlankFile], rows: int, columns: int) -> str:
     """The even margins of the grid where the points have them, or that each has its own place."""
     margin = None
     for file in files:
@@ -299,7 +297,7 @@ def _margins(member: Member, name: str, files: Sequence[FlankFile], rows: int, c
             margin = round(float((across.min() + 1 - across.max()) / 2), _DIGITS)
         if not 0 <= margin < 0.5:
             return OWN
-        nominal = solve_flank(member, name, str(file.flank[0]), blank_grid(member, rows, columns, margin))
+        nominal = solve_flank(member, str(file.flank[0]), blank_grid(member, rows, columns, margin))
         apart = np.linalg.norm(nominal.point[file.row * columns + file.col] - foot, axis=1)
         if apart.max() > _EVEN:
             return OWN

@@ -30,7 +30,7 @@ def noise_of_points(file: FlankFile, member: Member, found: MemberEvaluation, si
     covariance = point_covariance(file, sigma_um)
     if covariance is None:
         return None
-    return noise_of(member, found.member, found.file, covariance.carried(judged_by_measured(file, member, found)))
+    return noise_of(member, found.file, covariance.carried(judged_by_measured(file, member, found)))
 
 
 def uncertain_correction(
@@ -39,18 +39,17 @@ def uncertain_correction(
     """The correction of an evaluated member by the fewest settings, these with uncertainties, what errors of
     measurement do to each flank, and remarks: where there is no correction, why.
     """
-    name, judged = found.member, covariance.carried(judged_by_measured(file, member, found))
+    judged = covariance.carried(judged_by_measured(file, member, found))
     try:
         found.closing.check_topography()
         correction = correct(
             member,
-            name,
             found.file,
             few=True,
             noise=noise_of_points(file, member, found, sigma_um),
             indexed=found.closing.withheld is None,
         )
-        settings, effects = uncertain_settings(member, name, found.file, correction, judged)
+        settings, effects = uncertain_settings(member, found.file, correction, judged)
     except (InputError, ComputationError) as error:
         return None, [], {}, [f"no corrected settings: {error}"]
     return correction, settings, effects, list(correction.remarks)

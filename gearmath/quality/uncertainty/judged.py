@@ -59,7 +59,7 @@ def _without_drift(file: FlankFile, member: Member, found: MemberEvaluation) -> 
 
     Taking out the drift is linear and homogeneous, so that unit deviations of the nominal points give the columns.
     """
-    complete, _ = completed(file, member, found.member)
+    complete, _ = completed(file, member)
     whole = find_outliers(found.closing.straightened(complete), member.teeth).without(complete)
     known = np.isfinite(whole.deviation)
     kept = whole.tooth < member.teeth

@@ -179,7 +179,6 @@ def curvature(target: FlankTarget, found: Identification, k: int, pull: np.ndarr
 
 def uncertain_settings(
     member: Member,
-    name: str,
     file: FlankFile,
     correction: MemberCorrection,
     measured: Covariance,
@@ -192,7 +191,7 @@ def uncertain_settings(
     """
     settings: list[Uncertain] = []
     effects: dict[str, Effect] = {}
-    every = {flank: flank_target(member, name, flank, file) for flank in FLANKS}
+    every = {flank: flank_target(member, flank, file) for flank in FLANKS}
     places = {flank: rows_of(file, flank, target) for flank, target in every.items()}
     own = measured.pick(np.concatenate(list(places.values())))
     if correction.rotation.angles.size:  # it was found from both flanks
@@ -220,9 +219,9 @@ def uncertain_settings(
     return settings, effects
 
 
-def noise_of(member: Member, name: str, file: FlankFile, measured: Covariance) -> float:
+def noise_of(member: Member, file: FlankFile, measured: Covariance) -> float:
     """Noise [mm] of the points of a file from which settings are corrected: what differs from point to point."""
-    rows = [rows_of(file, flank, flank_target(member, name, flank, file)) for flank in FLANKS]
+    rows = [rows_of(file, flank, flank_target(member, flank, file)) for flank in FLANKS]
     return measured.pick(np.concatenate(rows)).noise
 
 

@@ -30,6 +30,4 @@ def covariance_of(
     how = load_measurement(find(model or _BUNDLED))
     spindle, probe = load_milling_machine(find(machine)), load_calibration(find(calibration))
     assumed = "" if model else " (assumed: the file has no u_um; give --sigma-um or --model)"
-    return touch_covariance(
-        file, member, file.member, how, spindle, probe
-    ), f"{model or _BUNDLED}: {how.title}{assumed}"
+    return touch_covariance(file, member, how, spindle, probe), f"{model or _BUNDLED}: {how.title}{assumed}"

@@ -36,14 +36,14 @@ def _slopes() -> ca.Function:
 
 
 def sensitivities(
-    member: Member, name: str, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
+    member: Member, flank: str, grid: Grid, machine: MillingMachine, calibration: Calibration
 ) -> np.ndarray:
     """Change of the deviation at the points of a flank per unit of X, Y, Z, A, squareness and growth (n,6).
 
     The same for every tooth: the work turns, and the axes but A stand where they stood. Squareness acts from the height
     at which the tip was calibrated, whose offset in X is that of this height.
     """
-    points, opposite = (solve_flank(member, name, each, grid) for each in (flank, _other(flank)))
+    points, opposite = (solve_flank(member, each, grid) for each in (flank, _other(flank)))
     (tip,) = kernel("probe_target")(points.point, points.normal, calibration.tip_radius, 0.0)
     (A,) = kernel("space_azimuth")(points.point, opposite.point)
     axes = tip_positions(tip, A, member.blank.delta_f, machine, calibration)
@@ -63,7 +63,7 @@ def sensitivities(
 
 
 def touch_covariance(
-    file: FlankFile, member: Member, name: str, how: MeasuringModel, machine: MillingMachine, calibration: Calibration
+    file: FlankFile, member: Member, how: MeasuringModel, machine: MillingMachine, calibration: Calibration
 ) -> Covariance:
     """Covariance of the deviations (n,) of a measured file, in its order.
 
@@ -74,7 +74,7 @@ def touch_covariance(
     for flank in FLANKS:
         here = file.flank == flank
         if here.any():
-            slope[here] = sensitivities(member, name, flank, file_grid(file, member, flank), machine, calibration)[
+            slope[here] = sensitivities(member, flank, file_grid(file, member, flank), machine, calibration)[
                 place[here]
             ]
     linear = np.linalg.norm(slope[:, :3], axis=1) * how.position_um / 1000

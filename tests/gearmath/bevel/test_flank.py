@@ -18,7 +18,7 @@ each_flank = pytest.mark.parametrize(("member", "flank"), [(m, f) for m in MEMBE
 @pytest.fixture
 def solved(gear_set, member, flank):
     spec = gear_set.member(member)
-    return solve_flank(spec, member, flank, blank_grid(spec))
+    return solve_flank(spec, flank, blank_grid(spec))
 
 
 def in_cone_coordinates(blank, axial, radial):
@@ -109,7 +109,7 @@ def test_normals_are_those_of_the_surface_that_the_solver_gives(gear_set, member
 def test_normals_point_out_of_the_metal_into_space_0_between_concave_and_convex(gear_set, member):
     """At one place on the blank, each flank looks across the space at the other, less than a pitch away."""
     spec = gear_set.member(member)
-    concave, convex = (solve_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS)
+    concave, convex = (solve_flank(spec, flank, blank_grid(spec)) for flank in FLANKS)
     around = np.stack([-concave.point[:, 1], concave.point[:, 0], 0 * concave.point[:, 0]], axis=1)
     polar = [np.arctan2(points.point[:, 1], points.point[:, 0]) for points in (concave, convex)]
     across = (polar[1] - polar[0] + np.pi) % (2 * np.pi) - np.pi
@@ -125,7 +125,7 @@ def test_trace_of_a_right_hand_tooth_turns_forward_from_toe_to_heel(gear_set, me
     spec = gear_set.member(member)
     assert spec.hand == ("right" if turn > 0 else "left")
     for flank in FLANKS:
-        points = solve_flank(spec, member, flank, blank_grid(spec)).point.reshape(5, 9, 3)
+        points = solve_flank(spec, flank, blank_grid(spec)).point.reshape(5, 9, 3)
         polar = np.unwrap(np.arctan2(points[..., 1], points[..., 0]), axis=1)
         assert (turn * np.diff(polar, axis=1) > 0).all()
 
@@ -145,11 +145,11 @@ def test_settings_of_the_other_hand_give_the_mirror_image(gear_set, member, flan
 def test_point_beyond_a_short_blade_is_refused_by_member_flank_row_and_column(gear_set, altered):
     """The gear is about 7 mm deep at the heel: a blade of 5 mm does not reach from root to tip."""
     short = altered(gear_set, "gear", "concave", blade_profile_height=5.0).gear
-    whole = solve_flank(gear_set.gear, "gear", "concave", blank_grid(gear_set.gear))
+    whole = solve_flank(gear_set.gear, "concave", blank_grid(gear_set.gear))
     first = int(np.argmax(whole.contact[:, 0] > 5.0))
     place = f"gear concave flank, row {first // 9}, column {first % 9}: "
     with pytest.raises(InputError, match=place + r".*above the blade.* 5\.\d{4} mm"):
-        solve_flank(short, "gear", "concave", blank_grid(short))
+        solve_flank(short, "concave", blank_grid(short))
 
 
 @pytest.mark.parametrize(
@@ -170,13 +170,13 @@ def test_place_off_the_flank_is_refused_by_member_flank_row_and_column(
     axial[row, column] -= deeper * np.sin(delta)
     radial[row, column] += deeper * np.cos(delta)
     with pytest.raises(InputError, match=f"^{member} {flank} flank, row {row}, column {column}: .*({words})"):
-        solve_flank(spec, member, flank, Grid(axial, radial))
+        solve_flank(spec, flank, Grid(axial, radial))
 
 
 def test_place_beneath_the_root_lies_below_the_blade_tip(gear_set):
     grid = blank_grid(gear_set.gear)
     with pytest.raises(InputError, match=r"row 0, column 0: .* below the blade tip"):
-        solve_flank(gear_set.gear, "gear", "convex", Grid(grid.axial + 2.5, grid.radial - 1.0))
+        solve_flank(gear_set.gear, "convex", Grid(grid.axial + 2.5, grid.radial - 1.0))
 
 
 def test_place_that_is_no_number_is_refused(gear_set):
@@ -184,7 +184,7 @@ def test_place_that_is_no_number_is_refused(gear_set):
     axial = grid.axial.copy()
     axial[1, 1] = np.nan
     with pytest.raises(InputError, match=r"pinion convex flank, row 1, column 1: .*no solution"):
-        solve_flank(gear_set.pinion, "pinion", "convex", Grid(axial, grid.radial))
+        solve_flank(gear_set.pinion, "convex", Grid(axial, grid.radial))
 
 
 @hypothesis_settings(deadline=None)
@@ -197,7 +197,7 @@ def test_no_point_is_returned_that_is_not_in_mesh_at_its_place_and_on_the_blade(
     grid = blank_grid(spec)
     axial, radial = grid.axial[2:3, 4:5] + axial_shift, grid.radial[2:3, 4:5] + radial_shift
     try:
-        points = solve_flank(spec, member, flank, Grid(axial, radial))
+        points = solve_flank(spec, flank, Grid(axial, radial))
     except InputError as error:
         assert f"{member} {flank} flank, row 0, column 0: " in str(error)  # noqa: PT017
         return

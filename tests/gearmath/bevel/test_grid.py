@@ -20,7 +20,7 @@ SIDES = Margins(root=0.05, tip=0.2, toe=0.15, heel=0.3)
 
 def measured(member, grid, margins, deviation=0.02):
     """A file of the gear's concave flank whose every point is ``deviation`` [mm] out of the metal."""
-    file = nominal_flank(member, "gear", "concave", grid, margins)
+    file = nominal_flank(member, "concave", grid, margins)
     out = np.full(len(file), deviation)
     return type(file)(
         file.header,
@@ -112,9 +112,9 @@ def test_deviations_are_those_of_the_points_measured_there(gear_set, margins):
     else:
         grid = blank_grid(member, 3, 4, margins)
     file = measured(member, grid, margins)
-    rows = nominal_rows(file, member, "gear")
+    rows = nominal_rows(file, member)
     np.testing.assert_allclose(rows.point, file.point - 0.02 * file.normal, atol=1e-8)
-    np.testing.assert_allclose(flank_target(member, "gear", "concave", file).deviation, 0.02)
+    np.testing.assert_allclose(flank_target(member, "concave", file).deviation, 0.02)
 
 
 def test_missing_point_of_a_listed_grid_is_filled_in_where_another_tooth_has_it(gear_set):
@@ -139,7 +139,7 @@ def test_missing_point_of_a_listed_grid_is_filled_in_where_another_tooth_has_it(
         first.deviation,
         first.uncertainty,
     )
-    whole, remarks = completed(join([first, second]).pick(keep), member, "gear")
+    whole, remarks = completed(join([first, second]).pick(keep), member)
     assert remarks == ("concave flank, tooth 0, row 1, col 1: not measured; left out",)
     here = (whole.tooth == 0) & (whole.row == 1) & (whole.col == 1)
     np.testing.assert_allclose(whole.point[here][0], first.point[5] - 0.02 * first.normal[5], atol=1e-8)

@@ -198,10 +198,10 @@ def drawn(bases: dict[str, dict]) -> list[tuple[str, str, dict]]:
     return [every[k] for k in sorted(chosen)]
 
 
-def assert_is_a_member(member: Member, name: str, what: str) -> None:
+def assert_is_a_member(member: Member, what: str) -> None:
     """Space, tooth, top land and hand by the points of the grid alone, all of it found."""
     grid, pitch = blank_grid(member), 2 * math.pi / member.teeth
-    concave, convex = (solve_flank(member, name, flank, grid) for flank in FLANKS)
+    concave, convex = (solve_flank(member, flank, grid) for flank in FLANKS)
     angle = [np.arctan2(flank.point[:, 1], flank.point[:, 0]).reshape(grid.shape) for flank in (concave, convex)]
     radius = np.hypot(concave.point[:, 0], concave.point[:, 1])
     around = concave.normal[:, 1] * concave.point[:, 0] - concave.normal[:, 0] * concave.point[:, 1]
@@ -213,7 +213,7 @@ def assert_is_a_member(member: Member, name: str, what: str) -> None:
     middle = grid.shape[0] // 2
     hand = 1 if member.hand == "right" else -1
     assert all(hand * (np.unwrap(flank[middle])[-1] - np.unwrap(flank[middle])[0]) > 0 for flank in angle), what
-    assert (tooth_space(member, name, 3).top_land > 0).all(), what
+    assert (tooth_space(member, 3).top_land > 0).all(), what
 
 
 def by_name(case: tuple) -> str:
@@ -246,7 +246,7 @@ def test_mutated_set_is_refused_in_one_sentence_or_is_a_pair(bases, mill, monkey
         if pair.member(member) != originals[name].member(member)
     ]
     for name, what, pair, member in changed:
-        assert_is_a_member(pair.member(member), member, f"{name}: {what}")
+        assert_is_a_member(pair.member(member), f"{name}: {what}")
     rolled = [case for case in changed if case[2].member(case[3]).process == "face_milling"]
     refused = []
     for name, what, pair, member in sorted(rolled, key=by_name)[:CUT]:
@@ -309,7 +309,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
     folder, pinion = tmp_path_factory.mktemp("good"), load_pair(bundled(f"{SETS[0]}.toml")).pinion
     measured, touched, program = folder / "m.csv", folder / "raw.csv", folder / "PINION.MPF"
     grid = blank_grid(pinion)
-    write_flank_csv(measured, join([nominal_flank(pinion, "pinion", flank, grid) for flank in FLANKS]))
+    write_flank_csv(measured, join([nominal_flank(pinion, flank, grid) for flank in FLANKS]))
     touched.write_text(f"{','.join(COLUMNS)}\n1,0,pinion,concave,0,0,0,0.0,0.0,0.0,0.0,0.0,1\n", "utf-8")
     program.write_text("G90\nM30\n", "utf-8")
     return {"measured": measured, "touched": touched, "program": program, "folder": folder}

@@ -25,9 +25,9 @@ UNIVERSAL, HOBBED = "crown_gear_universal_14x39.toml", "crown_gear_hobbed_14x39.
 STEEP = "spiral_7x43.toml"
 
 
-def left_by(member, name, flank, **errors):
+def left_by(member, flank, **errors):
     """Deviations of a flank whose machine is off by ``errors``, by names of settings and motions (dots as __)."""
-    target = target_of(member, flank, solve_flank(member, name, flank, blank_grid(member)))
+    target = target_of(member, flank, solve_flank(member, flank, blank_grid(member)))
     change = np.zeros(83)
     for key, value in errors.items():
         change[NAMES.index(key.replace("__", "."))] = value
@@ -42,12 +42,12 @@ def measured(tmp_path):
         member = load_bevel_set(source).member(name)
         files = []
         for flank in FLANKS:
-            target, deviation = left_by(member, name, flank, **errors)
+            target, deviation = left_by(member, flank, **errors)
             row, col = (index.ravel() for index in np.indices((5, 9)))
             if extra is not None:
                 deviation = deviation + extra(row, col)
             point = target.nominal.point + deviation[:, None] * target.nominal.normal
-            header = flank_header(member, name, (5, 9))
+            header = flank_header(member, (5, 9))
             files.append(flank_file(header, name, flank, 0, row, col, point, target.nominal.normal, deviation))
         path = tmp_path / f"{name}.csv"
         write_flank_csv(path, join(files))
@@ -62,7 +62,7 @@ def worst_after(path, name, **errors):
     But for a rotation of the work common to both: how the work stood was left open.
     """
     member = load_bevel_set(path).member(name)
-    targets, deviations = zip(*(left_by(member, name, flank, **errors) for flank in FLANKS), strict=True)
+    targets, deviations = zip(*(left_by(member, flank, **errors) for flank in FLANKS), strict=True)
     deviation = np.concatenate(deviations)
     column = np.concatenate([predicted(t, t.vector)[1][:, NAMES.index("work_rotation_offset")] for t in targets])
     return np.abs(deviation - column * (column @ deviation) / (column @ column)).max()

@@ -22,7 +22,7 @@ from gearmath.specs.toml import bundled
 def points(tmp_path):
     """The points of the 7x43 pinion with half a micrometre of noise, as a flank CSV."""
     member = load_bevel_set(bundled("spiral_7x43.toml")).member("pinion")
-    file = join([nominal_flank(member, "pinion", flank, blank_grid(member)) for flank in FLANKS])
+    file = join([nominal_flank(member, flank, blank_grid(member)) for flank in FLANKS])
     path = tmp_path / "points.csv"
     write_flank_csv(path, file.with_noise(np.random.default_rng(5).normal(0.0, 5e-4, len(file)), 5e-4))
     return path
@@ -61,7 +61,7 @@ def test_text_says_what_was_fitted_and_what_is_left(command, points, tmp_path):
 def test_points_that_are_larger_than_the_blank_and_a_gear_that_is_no_mate_are_said(command, tmp_path):
     """Points larger by a hundredth, away from the apex: a flank of its own; and a gear cut by a millimetre too wide."""
     member = load_bevel_set(bundled("spiral_7x43.toml")).member("pinion")
-    file = join([nominal_flank(member, "pinion", flank, blank_grid(member)) for flank in FLANKS])
+    file = join([nominal_flank(member, flank, blank_grid(member)) for flank in FLANKS])
     path, given, target = tmp_path / "points.csv", tmp_path / "given.toml", tmp_path / "set.toml"
     write_flank_csv(path, replace(file, point=1.01 * file.point))
     values = tomllib.loads(bundled("spiral_7x43.toml").read_text("utf-8"))
@@ -85,7 +85,7 @@ def test_points_of_another_machine_laid_on_another_set_give_the_flank_that_they_
     texts, options = [], []
     for flank in FLANKS:
         member = load_bevel_set(bundled("spiral_7x43.toml")).member("pinion")
-        points = nominal_flank(member, "pinion", flank, blank_grid(member))
+        points = nominal_flank(member, flank, blank_grid(member))
         texts.append(tmp_path / f"{flank}.txt")
         np.savetxt(texts[-1], np.hstack([points.point, points.normal]), "%.9f")
         options += ["--flank", flank]

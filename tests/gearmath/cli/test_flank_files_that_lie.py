@@ -31,7 +31,7 @@ def honest(gear_set):
     member, files = gear_set.pinion, []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(member, "pinion", flank, blank_grid(member), tooth=tooth)
+            one = nominal_flank(member, flank, blank_grid(member), tooth=tooth)
             up, along = one.row / 2 - 1, one.col / 4 - 1
             found = 1e-3 * (4.0 * up + 3.0 * up * along - 5.0 * along**2 + 2.0 * math.sin(tooth) + 30.0)
             one = replace(one, deviation=found, point=one.point + found[:, None] * one.normal)

@@ -19,7 +19,7 @@ SET = "nasa_tp3096_12x36.toml"
 
 
 def measured(gear_set, flank="concave", tooth=0):
-    file = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion), tooth=tooth)
+    file = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion), tooth=tooth)
     return replace(file, deviation=np.zeros(len(file)))
 
 
@@ -62,4 +62,4 @@ def test_header_that_does_not_fit_the_set(refused, gear_set, tmp_path, key, valu
 def test_flank_of_which_every_point_is_excluded(gear_set):
     file = measured(gear_set)
     with pytest.raises(InputError, match=r"^concave flank: every point is excluded$"):
-        flank_target(gear_set.pinion, "pinion", "concave", file, excluded=np.ones(len(file), dtype=bool))
+        flank_target(gear_set.pinion, "concave", file, excluded=np.ones(len(file), dtype=bool))

@@ -31,7 +31,7 @@ def written(path, gear_set, seat=SEAT, flanks=FLANKS, member="pinion"):
     """A member, tooth 0 measured in full, the others at middle and corners, with noise of 0.2 µm."""
     spec = gear_set.member(member)
     grid = blank_grid(spec)
-    whole = join([nominal_flank(spec, member, flank, grid, tooth=k) for k in range(spec.teeth) for flank in flanks])
+    whole = join([nominal_flank(spec, flank, grid, tooth=k) for k in range(spec.teeth) for flank in flanks])
     corner = np.isin(whole.row, (0, 4)) & np.isin(whole.col, (0, 8))
     whole = whole.pick((whole.tooth == 0) | corner | ((whole.row == 2) & (whole.col == 4)))
     noise = 2e-4 * np.random.default_rng(3).standard_normal(len(whole))
@@ -161,7 +161,7 @@ def test_every_point_of_both_flanks_has_its_deviation_with_the_reference_point_a
         ]
         values = np.array([number(text) for text in texts]).reshape(5, 9)
         assert values[2, 4] == 0
-        nominal = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion))
+        nominal = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion))
         turning = np.sum(np.cross([0, 0, 1], nominal.point) * nominal.normal, axis=1).reshape(5, 9)
         put_in = np.broadcast_to(4.0 + 3.0 * (np.arange(9) - 4) / 8, (5, 9))
         wanted = put_in - 4.0 * turning / turning[2, 4]
@@ -298,7 +298,7 @@ def test_no_uncertainty_on_the_sheet_is_zero(page):
 def test_sheet_and_picture_take_the_same_off_at_the_ring(gear_set, tmp_path, seat):
     """Whether or not a clamping was taken out: the rotation that both flanks have in common is in neither."""
     file = written(tmp_path / "m.csv", gear_set, seat)
-    found = evaluate_member(read_flank_csv(file), gear_set.pinion, "pinion")
+    found = evaluate_member(read_flank_csv(file), gear_set.pinion)
     sheet = flank_charts(ReportedMeasurement("t", "m.csv", gear_set.pinion, found, None), {})
     words = [unescape(re.search(r">([^<]*taken off there[^<]*)<", svg)[1]) for svg, _ in sheet]
     labels = [axes.get_xlabel() for axes in evaluation_figure("t", found).axes]

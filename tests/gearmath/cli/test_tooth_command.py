@@ -54,7 +54,7 @@ def azimuth_on_envelope(blade, axial, radial, start):
 def measured(path, gear_set, member):
     """Both flanks of one space, as if measured without a deviation."""
     spec = gear_set.member(member)
-    whole = join([nominal_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS])
+    whole = join([nominal_flank(spec, flank, blank_grid(spec)) for flank in FLANKS])
     write_flank_csv(path, replace(whole, deviation=np.zeros(len(whole))))
     return path
 

@@ -41,7 +41,7 @@ def cell(column, value, line):
 @pytest.fixture(scope="module")
 def raw(gear_set, vertical):
     """A run of touches on the nominal pinion, as the probing program writes it: the positions of its targets."""
-    targets = probe_targets(gear_set.pinion, "pinion", vertical, PROBE)
+    targets = probe_targets(gear_set.pinion, vertical, PROBE)
     lines = [",".join(COLUMNS)]
     for k in range(len(targets)):
         *linear, A, B = targets.touch[k]
@@ -300,7 +300,7 @@ def test_metal_along_the_search_is_measured_and_a_small_common_offset_is_said(
 ):
     """Stock of 0.4 mm on every flank is along the lines; the tip may have been calibrated anew by 0.05 mm."""
     path, out = tmp_path / "raw.csv", tmp_path / "out.csv"
-    targets = probe_targets(gear_set.pinion, "pinion", vertical, PROBE)
+    targets = probe_targets(gear_set.pinion, vertical, PROBE)
     way = targets.start[:, :3] - targets.touch[:, :3]
     way *= 0.4 / np.linalg.norm(way, axis=1)[:, None]
     lines = raw.splitlines()

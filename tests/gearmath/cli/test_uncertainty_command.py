@@ -30,10 +30,10 @@ def measured(tmp_path_factory, gear_set, shop):
     spec, rng = gear_set.pinion, np.random.default_rng(1)
     grid, files = blank_grid(spec), []
     for flank in FLANKS:
-        target = target_of(spec, flank, solve_flank(spec, "pinion", flank, grid))
+        target = target_of(spec, flank, solve_flank(spec, flank, grid))
         form, _ = predicted(target, target.settings + shop.setting_errors("pinion"))
         for tooth in range(12):
-            file = nominal_flank(spec, "pinion", flank, grid, tooth=tooth)
+            file = nominal_flank(spec, flank, grid, tooth=tooth)
             deviation = form + 2e-3 * rng.standard_normal() + 0.3e-3 * rng.standard_normal(45)
             file = replace(file, point=file.point + deviation[:, None] * file.normal, deviation=deviation)
             files.append(file if tooth == 0 else file.pick((file.row == 2) & (file.col == 4)))
@@ -93,10 +93,10 @@ def test_corrected_settings_are_those_that_compensate_writes(command, measured, 
     assert 2 <= len(names) < 14  # the few that are corrected
     spec = load_bevel_set(bundled(SET)).pinion
     file = read_flank_csv(measured)
-    found = evaluate_member(file, spec, "pinion")
+    found = evaluate_member(file, spec)
     judged = independent(np.full(len(file), 0.3e-3)).carried(judged_by_measured(file, spec, found))
-    noise = noise_of(spec, "pinion", found.file, judged)
-    correction = correct(spec, "pinion", found.file, few=True, noise=noise)
+    noise = noise_of(spec, found.file, judged)
+    correction = correct(spec, found.file, few=True, noise=noise)
     for flank, name in names:
         vector = correction.settings[flank][SETTINGS.index(name)]
         value = np.degrees(vector) if sharp[flank, name]["unit"] == "deg" else vector

@@ -39,7 +39,7 @@ def raw(gear_set: BevelSet, vertical: MillingMachine, shop: SimulatedMachine) ->
     """A probing program of the pinion, and the touches that it writes."""
     probe = load_calibration(bundled("probe.toml"))
     program = probing_program(gear_set, "pinion", vertical, probe, "PROBE")
-    there = ProbeMachine(gear_set.member("pinion"), "pinion", vertical, probe, seat=shop.measuring_clamp("pinion"))
+    there = ProbeMachine(gear_set.member("pinion"), vertical, probe, seat=shop.measuring_clamp("pinion"))
     return program, run_touches(program, "PROBE.MPF", there, shop, 122, setup=Setup.of(vertical, probe.length))
 
 

@@ -181,8 +181,8 @@ def test_every_value_that_a_set_may_have_is_one_of_the_data_model() -> None:
 @pytest.mark.parametrize("name", SETS)
 def test_right_flank_faces_to_the_right_seen_from_the_apex(name: str) -> None:
     # seen along z_w, with the tip up, azimuths grow to the right; a space begins with the right flank of its tooth
-    for member_name, member in load_bevel_set(bundled(f"{name}.toml")).members.items():
-        low, _ = tooth_space(member, member_name, 3).ordered
+    for member in load_bevel_set(bundled(f"{name}.toml")).members.values():
+        low, _ = tooth_space(member, 3).ordered
         assert low.flank == right_flank(member.hand)
         assert np.isfinite(low.point).all()
         assert right_flank(member.hand) in FLANKS

@@ -70,7 +70,7 @@ def test_solid_that_is_read_back_is_closed_valid_and_has_the_volume(read, pinion
     found = GProp_GProps()
     BRepGProp.VolumeProperties_s(read, found)
     # facets of an STL cut corners: of the one with 17 rows on a flank 1.5e-4, with 33 a quarter of that
-    space = tooth_space(gear_set.pinion, "pinion", 49, (("main", 33), ("toprem", 5), ("edge", 17)))
+    space = tooth_space(gear_set.pinion, 49, (("main", 33), ("toprem", 5), ("edge", 17)))
     assert found.Mass() == pytest.approx(volume(member_triangles(gear_set.pinion, space)), rel=1e-4)
     assert found.Mass() == pytest.approx(pinion[1], rel=1e-9)
 
@@ -80,7 +80,7 @@ def test_solid_that_is_read_back_is_closed_valid_and_has_the_volume(read, pinion
 def test_a_thousand_random_points_lie_on_the_surface(part: str, most: float, read, gear_set: BevelSet) -> None:
     member, n = gear_set.pinion, 1000
     blank, delta = member.blank, math.radians(member.blank.pitch_angle)
-    space = tooth_space(member, "pinion", 21)
+    space = tooth_space(member, 21)
     points = []
     for surface in (space.concave, space.convex):
         how = generation_of(member, surface.flank)
@@ -116,8 +116,8 @@ def _tip(member, distance: np.ndarray) -> np.ndarray:
 
 def test_patches_have_no_fold_between_the_points_they_go_through(gear_set: BevelSet) -> None:
     # normals between samples keep to those of their neighbors
-    for name, member in gear_set.members.items():
-        for grid in space_grids(tooth_space(member, name, 21, (("main", 11), ("toprem", 9), ("edge", 17)))):
+    for member in gear_set.members.values():
+        for grid in space_grids(tooth_space(member, 21, (("main", 11), ("toprem", 9), ("edge", 17)))):
             patch, h = through(grid), 1e-5
             u, v = (one.ravel() for one in np.meshgrid(np.linspace(0, 1 - h, 61), np.linspace(0, 1 - h, 83)))
             along, across = patch.at(u + h, v) - patch.at(u, v), patch.at(u, v + h) - patch.at(u, v)

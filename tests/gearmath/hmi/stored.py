@@ -47,9 +47,7 @@ def stored_runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with MeasurementStore.open(path) as store:
         for share, operator in zip(SHARES, ("Ann", "Bob"), strict=True):
             member = pair.member("pinion")
-            there = ProbeMachine(
-                member, "pinion", machine, probe, lambda *place, share=share: share * stock(*place), -0.05
-            )
+            there = ProbeMachine(member, machine, probe, lambda *place, share=share: share * stock(*place), -0.05)
             setup = Setup.of(machine, probe.length)
             text = run_touches(program, "PROBE.MPF", there, shop, 122, setup=setup)
             columns, *rows = csv.reader(line for line in text.splitlines() if not line.startswith("#"))

@@ -80,14 +80,14 @@ def test_program_of_a_tenth_of_a_micrometre_keeps_it_from_tip_to_root(
     path = execute(
         cutting_program(bevel_set, name, vertical, "EVERY_SET", CuttingJob(range(spec.teeth))), "EVERY_SET.MPF"
     )
-    states = surface_states(path, spec, name, vertical, spaces=(0,), columns=9)
+    states = surface_states(path, spec, vertical, spaces=(0,), columns=9)
     for state in states:
         limit = 1.2e-4 if state.surface.endswith("fillet") else 1e-4  # mm
         assert -limit <= state.lowest, state
         assert state.highest <= limit, state
         assert (state.gouged, state.uncut) == (0, 0), state
     assert len(states) == 5
-    runs = runs_of(path, spec, name, vertical, None, tooth_space(spec, name, 5))
+    runs = runs_of(path, spec, vertical, None, tooth_space(spec, 5))
     assert collisions(path, runs, spec, vertical) == []
 
 
@@ -99,7 +99,7 @@ def test_flank_file_of_one_space_keeps_it(gear_set: str, name: str, vertical: Mi
     member = bevel_set.member(name)
     spaces = range(member.teeth if member.process == "face_hobbing" else 1)
     text = cutting_program(bevel_set, name, vertical, "EVERY_SET", CuttingJob(spaces, tolerance=1e-4))
-    measured = mill_member(execute(text, "EVERY_SET.MPF"), member, name, vertical)
+    measured = mill_member(execute(text, "EVERY_SET.MPF"), member, vertical)
     for flank in FLANKS:
         deviation = measured.select(flank).deviation
         assert len(deviation) == 45 + len(spaces) - 1
@@ -112,11 +112,11 @@ def test_program_for_toprem_blades_leaves_what_their_exact_motion_leaves(
 ) -> None:
     """Where Toprem and main blade join, each cuts some micrometres off the other's surface: so does the program."""
     bevel_set = with_toprem(load_bevel_set(bundled("nasa_tp3096_12x36.toml")))
-    spec, space = bevel_set.gear, tooth_space(bevel_set.gear, "gear", 9)
+    spec, space = bevel_set.gear, tooth_space(bevel_set.gear, 9)
     path = execute(cutting_program(bevel_set, "gear", vertical, "TOPREM", CuttingJob(range(3))), "TOPREM.MPF")
-    runs = runs_of(path, spec, "gear", vertical, None, space, SHARP_EDGE)
+    runs = runs_of(path, spec, vertical, None, space, SHARP_EDGE)
     for surface in nominal_surfaces(spec, space):
-        exact = left_by_exact_motion(spec, "gear", space, surface)
+        exact = left_by_exact_motion(spec, space, surface)
         left = expose(runs, vertical, None, surface.point, surface.normal, surface.start).distance
         assert np.abs(left - exact).max() <= 1.2e-4  # mm, corners as above
         assert np.abs(exact).max() < 0.02

@@ -215,7 +215,7 @@ def test_uncertainty_picture_of_many_teeth_has_a_tick_each_and_numbers_that_fit(
 def test_the_two_flanks_drawn_bound_a_tooth_and_not_a_space(gear_set, member):
     """The outward normals of a tooth point away from its other flank; those of a space towards it."""
     spec = getattr(gear_set, member)
-    file = join([nominal_flank(spec, member, name, blank_grid(spec)) for name in FLANKS])
+    file = join([nominal_flank(spec, name, blank_grid(spec)) for name in FLANKS])
     one, other = tooth_flanks(file, {name: flank(0.0, name) for name in FLANKS}, spec.teeth).values()
     across = other.point[REFERENCE] - one.point[REFERENCE]
     assert across @ one.normal[REFERENCE] < 0 < across @ other.normal[REFERENCE]
@@ -224,7 +224,7 @@ def test_the_two_flanks_drawn_bound_a_tooth_and_not_a_space(gear_set, member):
 
 def test_perspective_lifts_what_is_left_on_out_of_the_flank_and_shades_it_darker(gear_set):
     spec = gear_set.pinion
-    file = join([nominal_flank(spec, "pinion", name, blank_grid(spec)) for name in FLANKS])
+    file = join([nominal_flank(spec, name, blank_grid(spec)) for name in FLANKS])
     tilted = np.broadcast_to(10.0 * (np.arange(9) - 4), (5, 9))
     flanks = tooth_flanks(file, {name: flank(tilted, name) for name in FLANKS}, spec.teeth)
     figure = Figure(figsize=(4, 3))
@@ -244,9 +244,9 @@ def test_shades_become_darker_all_the_way_so_that_a_print_without_color_has_the_
 
 def test_a_file_name_with_dollars_is_a_name_and_no_formula(gear_set):
     spec = gear_set.pinion
-    file = join([nominal_flank(spec, "pinion", name, blank_grid(spec)) for name in FLANKS])
+    file = join([nominal_flank(spec, name, blank_grid(spec)) for name in FLANKS])
     file = replace(file, deviation=np.zeros(len(file)))
-    found = evaluate_member(file, spec, "pinion", registered=False)
+    found = evaluate_member(file, spec, registered=False)
     for figure in (evaluation_figure("a$^b$.csv", found), uncertainty_figure("a$^b$.csv", figures())):
         FigureCanvasAgg(figure).draw()
         assert figure.get_suptitle().startswith("a$^b$.csv")
@@ -255,7 +255,7 @@ def test_a_file_name_with_dollars_is_a_name_and_no_formula(gear_set):
 def test_every_word_of_every_chart_of_the_sheet_lies_within_its_picture(gear_set):
     """Of a member of 36 teeth and long numbers."""
     spec = gear_set.gear
-    file = join([nominal_flank(spec, "gear", name, blank_grid(spec)) for name in FLANKS])
+    file = join([nominal_flank(spec, name, blank_grid(spec)) for name in FLANKS])
     flanks = tooth_flanks(file, {name: flank(-88.8, name) for name in FLANKS}, spec.teeth)
     wave = 0.1234 * np.sin(2 * np.pi * np.arange(36) / 36)
     pitch, runout = Pitch("concave", 0 * wave, wave), Runout(wave, 2 * np.pi * np.arange(36) / 36, np.eye(36))

@@ -162,7 +162,6 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
 
     def make(
         member: Member,
-        name: str,
         seat: Sequence[float] = (0, 0, 0, 0),
         teeth: Sequence[int] = range(8),
         places: Sequence[int] | None = None,
@@ -173,8 +172,8 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
     ) -> FlankFile:
         grid_ = blank_grid(member, *grid)
         row, col = (each.ravel() for each in np.indices(grid))
-        header, files = flank_header(member, name, grid_.shape), []
-        nominals = {flank: solve_flank(member, name, flank, grid_) for flank in FLANKS}
+        header, files = flank_header(member, grid_.shape), []
+        nominals = {flank: solve_flank(member, flank, grid_) for flank in FLANKS}
         kept = [np.arange(len(row)) if places is None or i in whole else np.array(places) for i in teeth]
         keep, tooth = np.concatenate(kept), np.repeat(list(teeth), [len(each) for each in kept])
         found = {}
@@ -185,7 +184,9 @@ def clamped(witness: SimpleNamespace) -> Callable[..., FlankFile]:
             for flank in FLANKS:
                 point, normal, deviation = (each[tooth == i] for each in found[flank])
                 touched = point + deviation[:, None] * normal
-                files.append(flank_file(header, name, flank, i, row[where], col[where], touched, normal, deviation))
+                files.append(
+                    flank_file(header, member.name, flank, i, row[where], col[where], touched, normal, deviation)
+                )
         return join(files)
 
     return make

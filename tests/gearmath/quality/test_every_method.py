@@ -43,9 +43,9 @@ def member_of(set_name, name, arc=False):
     return member.model_copy(update=flanks)
 
 
-def targets_of(member, name, flanks=FLANKS, rows=5, columns=9):
+def targets_of(member, flanks=FLANKS, rows=5, columns=9):
     grid = blank_grid(member, rows, columns)
-    return [replace(target_of(member, flank, solve_flank(member, name, flank, grid)), root=None) for flank in flanks]
+    return [replace(target_of(member, flank, solve_flank(member, flank, grid)), root=None) for flank in flanks]
 
 
 def groups_of(member):
@@ -97,7 +97,7 @@ def test_sensitivities_are_finite_differences_of_re_solved_surfaces(set_name, na
     member = member_of(set_name, name, arc)
     motions = ("sliding_base.1", "work_rotation_offset.2", "radial_distance.3", "machine_root_angle.1")
     for flank in FLANKS:
-        (target,) = targets_of(member, name, (flank,), 2, 3)
+        (target,) = targets_of(member, (flank,), 2, 3)
         deviation, gradient = predicted(target, target.vector)
         np.testing.assert_allclose(deviation, 0, atol=1e-9)
         for k in (*range(12), *map(NAMES.index, motions), NAMES.index("blade_spheric_radius")):
@@ -120,14 +120,14 @@ def cut(brute_force):
     def make(set_name, name):
         if (set_name, name) not in known:
             member = member_of(set_name, name)
-            known[set_name, name] = [_group(brute_force, member, name, flanks) for flanks in groups_of(member)]
+            known[set_name, name] = [_group(brute_force, member, flanks) for flanks in groups_of(member)]
         return known[set_name, name]
 
     return make
 
 
-def _group(brute_force, member, name, flanks):
-    targets, free = targets_of(member, name, flanks), free_settings(member)
+def _group(brute_force, member, flanks):
+    targets, free = targets_of(member, flanks), free_settings(member)
     variables = variables_of(free, len(targets))
     errors = 1e-3 * np.random.default_rng(0).uniform(-1, 1, len(variables)) * [v.bound for v in variables]
     for _ in range(3):
@@ -222,7 +222,7 @@ def test_noise_leaves_as_much_as_there_are_corrected_parameters(cut, host_compil
 def test_higher_order_errors_need_motions_and_are_found_with_them(brute_force, host_compiler):
     """Modified roll of 0.2 degrees per rad² and a helical motion, which no setting at rest makes up for."""
     member = member_of("crown_gear_universal_14x39", "pinion")
-    targets = targets_of(member, "pinion", ("concave",))
+    targets = targets_of(member, ("concave",))
     names = ("work_rotation_offset.2", "sliding_base.1")
     free, variables = free_settings(member, higher_order=True), variables_of(names, 1)
     errors = np.array([np.radians(0.2), 0.15])
@@ -238,7 +238,7 @@ def test_higher_order_errors_need_motions_and_are_found_with_them(brute_force, h
 
 def test_blades_of_a_completing_cut_are_identified_one_by_one(brute_force, host_compiler):
     member = member_of("crown_gear_hobbed_14x39", "gear")
-    targets, names = targets_of(member, "gear"), ("sliding_base", "blade_pressure_angle")
+    targets, names = targets_of(member), ("sliding_base", "blade_pressure_angle")
     variables = variables_of(names, 2)
     assert [variable.label for variable in variables] == [
         "sliding_base",

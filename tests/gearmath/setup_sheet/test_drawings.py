@@ -116,7 +116,7 @@ def test_sizes_of_the_blank_are_those_of_a_hand_calculation_and_to_scale(gear_se
 
 def test_point_of_a_completing_cutter_is_as_wide_as_its_blades_are_apart(gear_set):
     """The NASA gear: 3.0325 and 2.9675 in, 0.065 in apart."""
-    (tool,) = tools_of(gear_set.gear, "gear", None)
+    (tool,) = tools_of(gear_set.gear, None)
     assert tool.point.width == pytest.approx(0.065 * 25.4, abs=1e-9)
     assert tool.point.fault is None
     dimensions, _, words = parsed(point_drawing(cutter_of(gear_set.gear, ("concave", "convex"), None)))
@@ -133,7 +133,7 @@ def test_point_of_a_cutter_for_one_flank_is_limited_by_the_slot_that_both_leave(
     space = ToothSpace(*flanks, 0.5, slot, dict.fromkeys(("concave", "convex"), slot))
     wanted = gear_set.pinion.concave.model_copy(update={"blade_point_width": 2.0})
     member = gear_set.pinion.model_copy(update={"concave": wanted})
-    concave, convex = tools_of(member, "pinion", space)
+    concave, convex = tools_of(member, space)
     assert (concave.point.least, concave.point.most) == pytest.approx((2.5, 3.0))
     assert concave.point.stated
     assert not convex.point.stated

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import math
+import pickle
 import tomllib
 
 import numpy as np
@@ -12,8 +14,10 @@ from gearmath.errors import InputError
 from gearmath.specs.bevel_set import (
     FLANKS,
     MACHINE_SETTINGS,
+    MEMBERS,
     SETTINGS,
     BevelSet,
+    Member,
     design_sha256,
     load_bevel_set,
     settings_sha256,
@@ -203,3 +207,34 @@ def test_design_of_one_flank_does_not_give_a_completing_cut_a_second_machine():
     concave["design"] = {key: concave[key] for key in SETTINGS} | {"radial_distance": concave["radial_distance"] + 0.2}
     with pytest.raises(InputError, match="gear: design: a completing cut has one radial_distance for both flanks"):
         checked(values, BevelSet, "set")
+
+
+def test_members_of_a_set_know_which_one_they_are(gear_set):
+    for name in MEMBERS:
+        member = gear_set.member(name)
+        copies = member.model_copy(update={"blank": member.blank}), copy.copy(member), copy.deepcopy(member)
+        for same in (member, *copies, pickle.loads(pickle.dumps(gear_set)).member(name)):
+            assert (same.name, same) == (name, member)
+
+
+def test_name_of_a_member_stands_in_no_file_and_no_digest(gear_set):
+    pinion = gear_set.pinion
+    assert "name" not in {*pinion.model_dump(), *Member.keys(), *Member.model_json_schema()["properties"]}
+    assert "name" not in repr(pinion) + pinion.model_dump_json()
+    gear = pinion.named("gear")
+    assert design_sha256(gear) == design_sha256(pinion)
+    assert settings_sha256(gear) == settings_sha256(pinion)
+    with pytest.raises(InputError, match=r"set: pinion\.name = 'pinion': no such key"):
+        parse(changed("pinion", "[pinion]\n", '[pinion]\nname = "pinion"\n'), BevelSet, "set")
+
+
+def test_member_that_was_in_no_set_has_no_name_until_it_is_given_one(gear_set):
+    bare = Member.model_validate(gear_set.pinion.model_dump())
+    with pytest.raises(LookupError, match="named"):
+        bare.name  # noqa: B018
+    assert bare.named("pinion") == gear_set.pinion
+    values = {"title": "one", "source": "", "shaft_angle": 90.0}
+    assert BevelSet(**values, gear=bare).gear.name == "gear"
+    assert BevelSet(**values, pinion=bare.named("gear")).pinion.name == "pinion"
+    with pytest.raises(LookupError, match="named"):  # a set leaves the one that it was made of as it was
+        bare.name  # noqa: B018

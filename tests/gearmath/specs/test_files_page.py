@@ -70,8 +70,8 @@ def test_examples_of_the_page_are_read(title, tmp_path):
 def test_example_of_measured_points_is_of_the_bundled_set_that_it_names(tmp_path):
     file = flank_csv.read_flank_csv(example(section("Flank CSV"), tmp_path))
     pinion = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).member("pinion")
-    check_belongs(pinion, "pinion", file)
-    check_points(file, nominal_rows(file, pinion, "pinion"), pinion, "pinion")
+    check_belongs(pinion, file)
+    check_points(file, nominal_rows(file, pinion), pinion)
 
 
 def test_example_of_a_point_text_is_read_to_the_points_of_the_flank_csv(tmp_path):

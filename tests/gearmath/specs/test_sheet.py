@@ -350,8 +350,8 @@ def test_settings_from_the_crossing_point_cut_the_flank_that_those_from_the_apex
             )
         assert ours.member(member).blank.pitch_apex_beyond_crossing_point == BEYOND
     grid = blank_grid(ours.gear, 3, 3)
-    expected = solve_flank(gear_set.gear, "gear", "concave", blank_grid(gear_set.gear, 3, 3))
-    np.testing.assert_allclose(solve_flank(ours.gear, "gear", "concave", grid).point, expected.point, atol=1e-9)
+    expected = solve_flank(gear_set.gear, "concave", blank_grid(gear_set.gear, 3, 3))
+    np.testing.assert_allclose(solve_flank(ours.gear, "concave", grid).point, expected.point, atol=1e-9)
 
 
 def test_corrected_set_and_text_count_from_the_crossing_point_again(gear_set, new_settings, tmp_path):

@@ -71,7 +71,7 @@ def test_correction_by_the_mate_says_that_there_is_none(alone, refused, tmp_path
     absent = "gear" if name == "pinion" else "pinion"
     measured = tmp_path / "m.csv"
     member = gear_set.member(name)
-    write_flank_csv(measured, join([nominal_flank(member, name, flank, blank_grid(member)) for flank in FLANKS]))
+    write_flank_csv(measured, join([nominal_flank(member, flank, blank_grid(member)) for flank in FLANKS]))
     refused(
         rf"--from-mate: .*alone\.toml: has no {absent}",
         "compensate",

@@ -88,7 +88,7 @@ def _header(plan: CuttingPlan, numbers: dict[str, int]) -> Iterator[str]:
     yield f"gearmath {__version__} cutting program"
     yield "control: LinuxCNC"
     yield f"set: {plain(plan.title)}"
-    yield member_note(member, plan.name)
+    yield member_note(member)
     yield f"machine settings sha256: {settings_sha256(member)}"
     yield from tolerance_notes(plan)
     yield _path_note(plan)
@@ -125,7 +125,7 @@ def path_share_of(plan: CuttingPlan) -> float:
     """Most that the path mode adds to the flanks [mm], along their normals."""
     linear = LEFT_BY * plan.machine.control.path_tolerance[0]
     turning = turned_at_corners(plan.passes, linear)
-    return path_share(plan.member, plan.name, plan.machine, linear, turning)
+    return path_share(plan.member, plan.machine, linear, turning)
 
 
 def _body(dialect: Dialect, plan: CuttingPlan, numbers: dict[str, int], highest: float) -> Iterator[str]:

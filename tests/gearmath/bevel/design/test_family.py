@@ -144,15 +144,15 @@ def test_pair_that_runs_but_is_undercut_at_its_toe_gets_larger_pressure_angles_w
     }
     made, figures, _ = accepted(checked(data, DesignData, "12 x 36"))
     assert figures["changed"] == {"pressure_angle_drive": 22.5, "pressure_angle_coast": 22.5}
-    assert space_figures(made.pair.pinion, tooth_space(made.pair.pinion, "pinion"))["undercut_points"] == 0
+    assert space_figures(made.pair.pinion, tooth_space(made.pair.pinion))["undercut_points"] == 0
     folded = design(checked(data, DesignData, "12 x 36 of 20 degrees"))
-    space = tooth_space(folded.pair.pinion, "pinion")
+    space = tooth_space(folded.pair.pinion)
     # the fold lies above the reach of the mate at most as far as the lowest row before it
     radial, axial = np.hypot(*space.concave.point[-10, 0, :2]), space.concave.point[-10, 0, 2]
     delta = math.radians(folded.pair.pinion.blank.pitch_angle)
     height = radial * math.cos(delta) - axial * math.sin(delta)
     blank = folded.pair.pinion.blank
-    assert 0 < undercut(folded.pair.pinion, "pinion") < height + blank.mean_dedendum - blank.clearance
+    assert 0 < undercut(folded.pair.pinion) < height + blank.mean_dedendum - blank.clearance
     with pytest.raises(InputError, match=r"^pinion: undercut reaches 0\.\d+ mm above .* at most 0 mm"):
         verdict(folded)
 
@@ -173,7 +173,7 @@ def test_shallower_teeth_are_cut_where_the_usual_depth_leaves_a_ridge_or_undercu
     for key, part in factors.items():
         assert figures["changed"][f"data_type_2.{key}"] == pytest.approx(part * getattr(start, key))
     for name in ("pinion", "gear"):
-        assert space_figures(made.pair.member(name), tooth_space(made.pair.member(name), name))["undercut_points"] == 0
+        assert space_figures(made.pair.member(name), tooth_space(made.pair.member(name)))["undercut_points"] == 0
     with pytest.raises(InputError, match=said):
         verdict(design(mixed(seed)))
 

@@ -35,9 +35,9 @@ def with_width(member: Member, width: float | None) -> Member:
 
 def left_on_the_concave_fillet(member: Member) -> float:
     """The least that all cutters leave on the fillet [mm]."""
-    space = tooth_space(member, "pinion", 5)
+    space = tooth_space(member, 5)
     (fillet,) = (one for one in nominal_surfaces(member, space) if one.name == "concave fillet")
-    return float(left_by_exact_motion(member, "pinion", space, fillet).min())
+    return float(left_by_exact_motion(member, space, fillet).min())
 
 
 def test_no_cutter_of_a_designed_pinion_cuts_into_the_other_fillet(pinion) -> None:
@@ -53,7 +53,7 @@ def test_depth_is_what_the_moved_cutter_takes_and_is_said(pinion, width) -> None
     taken = left_on_the_concave_fillet(member)
     assert taken < -10e-3
     assert fillet_room(member, "convex", width) == pytest.approx(taken, rel=0.1)
-    said = far_sides_note(member, tooth_space(member, "pinion"))
+    said = far_sides_note(member, tooth_space(member))
     depth = -1000 * fillet_room(member, "convex", width)
     assert f"of {width:.3f} mm point width cuts {depth:.0f} um into the concave fillet" in said
     assert "blade_point_width must be at most 0.98 mm" in said

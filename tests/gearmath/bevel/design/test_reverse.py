@@ -42,9 +42,9 @@ def bundled_set(name: str) -> BevelSet:
     return load_bevel_set(bundled(f"{name}.toml"))
 
 
-def points_of(member: Member, name: str, noise: float = 0.0, seed: int = 13) -> FlankFile:
+def points_of(member: Member, noise: float = 0.0, seed: int = 13) -> FlankFile:
     """The 5x9 points of both flanks of a member, off along their normals by seeded noise [mm]."""
-    file = join([nominal_flank(member, name, flank, blank_grid(member)) for flank in FLANKS])
+    file = join([nominal_flank(member, flank, blank_grid(member)) for flank in FLANKS])
     return file.with_noise(np.random.default_rng(seed).normal(0.0, noise, len(file)), noise) if noise else file
 
 
@@ -54,14 +54,14 @@ def known(member: Member, **changes) -> KnownMember:
     return replace(found, **changes)
 
 
-def distance(found: Member, true: Member, name: str, flank: str) -> np.ndarray:
+def distance(found: Member, true: Member, flank: str) -> np.ndarray:
     """Distance [mm] of two flanks at 11x21 places, along the normals of the true one.
 
     By the point of the flank found that stands at the same place of the blank, and its normal: no fit, and no kernel
     that looks along a line.
     """
     grid = blank_grid(true, 11, 21)
-    there = solve_flank(true, name, flank, grid)
+    there = solve_flank(true, flank, grid)
     section = blade_sections(found.flank(flank), SIDES[flank])["main"]
     here = solve_section(generation_of(found, flank), section, grid.axial.ravel(), grid.radial.ravel())
     assert here.converged.all()
@@ -74,9 +74,9 @@ def test_flanks_of_bundled_members_are_found_again_from_noisy_points_and_a_blank
     """Everywhere between the points within three standard deviations of one of them, and as a set that passes."""
     pair = bundled_set(which)
     member = pair.member(name)
-    found = reverse(known(member), given_flanks(points_of(member, name, NOISE), member.teeth), name)
+    found = reverse(known(member), given_flanks(points_of(member, NOISE), member.teeth), name)
     for flank in FLANKS:
-        assert np.abs(distance(found.member, member, name, flank)).max() <= SIGMAS * NOISE
+        assert np.abs(distance(found.member, member, flank)).max() <= SIGMAS * NOISE
         assert found.flanks[flank].rms < found.flanks[flank].rms_before / 50
     check_pair(BevelSet(title="found", source="test", shaft_angle=pair.shaft_angle, **{name: found.member}))
 
@@ -84,9 +84,9 @@ def test_flanks_of_bundled_members_are_found_again_from_noisy_points_and_a_blank
 def test_points_without_noise_give_a_published_flank_back_to_rounding():
     """NASA's pinion: the flank of the published settings to a tenth of a micrometre, whatever the settings found."""
     member = bundled_set("nasa_tp3096_12x36").member("pinion")
-    found = reverse(known(member), given_flanks(points_of(member, "pinion"), member.teeth), "pinion")
+    found = reverse(known(member), given_flanks(points_of(member), member.teeth), "pinion")
     for flank in FLANKS:
-        assert np.abs(distance(found.member, member, "pinion", flank)).max() <= 1e-4
+        assert np.abs(distance(found.member, member, flank)).max() <= 1e-4
 
 
 def mirrored(file: FlankFile) -> FlankFile:
@@ -97,7 +97,7 @@ def mirrored(file: FlankFile) -> FlankFile:
 
 def test_mirrored_points_give_the_member_of_the_other_hand_with_mirrored_settings():
     member = bundled_set("nasa_tp3096_12x36").member("pinion")
-    file = points_of(member, "pinion", NOISE)
+    file = points_of(member, NOISE)
     left, right = (
         reverse(known(member), given_flanks(one, member.teeth), "pinion").member for one in (file, mirrored(file))
     )
@@ -111,17 +111,17 @@ def test_mirrored_points_give_the_member_of_the_other_hand_with_mirrored_setting
 def test_flanks_of_a_tooth_are_taken_as_those_of_a_space():
     """A file whose convex flank is a pitch on bounds a tooth; the member is the same."""
     member = bundled_set("crown_gear_universal_14x39").member("gear")
-    given = given_flanks(points_of(member, "gear", NOISE), member.teeth)
+    given = given_flanks(points_of(member, NOISE), member.teeth)
     shifted = {**given, "convex": given["convex"].turned(2 * math.pi / member.teeth)}
     first, second = (reverse(known(member), one, "gear").member for one in (given, shifted))
     for flank in FLANKS:
-        assert np.abs(distance(first, second, "gear", flank)).max() <= 1e-6
+        assert np.abs(distance(first, second, flank)).max() <= 1e-6
 
 
 def test_all_teeth_of_a_file_count_alike():
     """Two teeth that are off by as much to either side are the flank between them."""
     member = bundled_set("spiral_7x43").member("gear")
-    file = points_of(member, "gear")
+    file = points_of(member)
     off = 0.01 * np.cos(np.arange(len(file)))
     angle = 2 * math.pi * 5 / member.teeth
     one, other = file.with_noise(off, 1e-3), file.with_noise(-off, 1e-3)
@@ -159,14 +159,14 @@ def test_hobbed_flanks_are_no_milled_ones_and_what_is_left_is_said():
     """No milled flank is an epicycloid: some micrometres are left, more than the points scatter."""
     member = bundled_set("crown_gear_hobbed_14x39").member("gear")
     milled = known(member, blade_groups=None, cutting="fixed_setting")
-    found: ReversedMember = reverse(milled, given_flanks(points_of(member, "gear", NOISE), member.teeth), "gear")
+    found: ReversedMember = reverse(milled, given_flanks(points_of(member, NOISE), member.teeth), "gear")
     for flank in found.flanks.values():
         assert flank.scatter < flank.not_reproduced <= flank.rms * 1.3 <= 1.3 * LIMIT
 
 
 def test_flanks_that_a_method_cannot_cut_are_refused_with_the_limit():
     member = bundled_set("nasa_tp3096_12x36").member("gear")
-    given = given_flanks(points_of(member, "gear"), member.teeth)
+    given = given_flanks(points_of(member), member.teeth)
     with pytest.raises(InputError, match=r"no settings \(completing, formate.*um RMS, which must be at most 10"):
         reverse(known(member, generation="formate"), given, "gear")
 
@@ -194,7 +194,7 @@ def _inward(given):
 )
 def test_points_that_are_not_those_of_the_member_are_refused(changed, changes, words):
     member = bundled_set("nasa_tp3096_12x36").member("pinion")
-    given = given_flanks(points_of(member, "pinion"), member.teeth)
+    given = given_flanks(points_of(member), member.teeth)
     with pytest.raises(InputError, match=words):
         reverse(known(member, **changes), changed(given), "pinion")
 
@@ -203,7 +203,7 @@ def test_points_of_another_blank_are_refused():
     member, other = (bundled_set(name).member("pinion") for name in ("nasa_tp3096_12x36", "spiral_7x43"))
     far = other.blank.model_copy(update={"mean_cone_distance": 110.0})
     with pytest.raises(InputError, match=r"has a cone distance of .* mm, the blank has 110 mm there"):
-        reverse(known(member, blank=far), given_flanks(points_of(member, "pinion"), member.teeth), "pinion")
+        reverse(known(member, blank=far), given_flanks(points_of(member), member.teeth), "pinion")
 
 
 @pytest.mark.parametrize(
@@ -215,7 +215,7 @@ def test_points_of_another_blank_are_refused():
 )
 def test_files_that_do_not_tell_the_flanks_are_refused(header, words):
     member = bundled_set("nasa_tp3096_12x36").member("pinion")
-    file = points_of(member, "pinion")
+    file = points_of(member)
     with pytest.raises(InputError, match=words):
         given_flanks(replace(file, header={**file.header, **header}), member.teeth)
 
@@ -235,7 +235,7 @@ def test_blades_of_the_set_that_the_blank_is_of_are_kept_where_straight_and_refu
     path, member = tmp_path / "set.toml", bundled_set("nasa_tp3096_12x36").member("pinion")
     head, table, rest = bundled("nasa_tp3096_12x36.toml").read_text("utf-8").partition("[pinion.concave]\n")
     path.write_text(f"{head}{table}{keys}\n{rest}", "utf-8")
-    file = points_of(member, "pinion")
+    file = points_of(member)
     if said is not None:
         with pytest.raises(InputError, match=said):
             reversed_set(load_known(path), file, "test")
@@ -249,8 +249,8 @@ def test_known_cutter_and_the_curvature_of_the_flanks_lead_to_the_same_flank():
     """A crown gear's pair from a blank file: with the cutter of the file, and with none."""
     data = load_blank_data(bundled("blank_iso23509_sample1.toml"))
     member = crown_gear_set(data, Method("fixed_setting"), Method()).member("pinion")
-    given = given_flanks(points_of(member, "pinion"), member.teeth)
+    given = given_flanks(points_of(member), member.teeth)
     for radius in (None, data.cutter.cutter_radius):
         found = reverse(known(member, cutter_radius=radius), given, "pinion")
         for flank in FLANKS:
-            assert np.abs(distance(found.member, member, "pinion", flank)).max() <= 1e-4
+            assert np.abs(distance(found.member, member, flank)).max() <= 1e-4

@@ -23,7 +23,7 @@ from tests.gearmath.bevel.design.family import mixed
 def deepest(name: str, member_name: str, flank: str):
     member = load_bevel_set(bundled(name)).member(member_name)
     how = generation_of(member, flank)
-    line = root_line(member, flank, how, solve_flank(member, member_name, flank, blank_grid(member)))
+    line = root_line(member, flank, how, solve_flank(member, flank, blank_grid(member)))
     return member, replace(line, deepest=True), whole(how.settings, how.motion)
 
 
@@ -45,9 +45,7 @@ def test_deepest_line_of_a_tilted_hobbing_cutter_is_left_by_tips_that_stand_off_
     member = design(mixed(33)).pair.member("pinion")
     for flank in ("concave", "convex"):
         spec, how = member.flank(flank), generation_of(member, flank)
-        line = replace(
-            root_line(member, flank, how, solve_flank(member, "pinion", flank, blank_grid(member))), deepest=True
-        )
+        line = replace(root_line(member, flank, how, solve_flank(member, flank, blank_grid(member))), deepest=True)
         vector = whole(how.settings, how.motion)
         mean = solve_section(how, blade_sections(spec, SIDES[flank])["main"], *mean_place(member)).contact
         trace = root_trace(member, flank, how, mean).point

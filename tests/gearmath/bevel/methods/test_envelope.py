@@ -45,7 +45,7 @@ def test_blade_edge_touches_every_point_and_takes_nothing_more_away(methods, mov
     The search starts beside the solution: 0.2 mm along the blade, and off its cutter and cradle angle.
     """
     member = methods[method] if hand == "as listed" else moved_edge.mirrored(methods[method])
-    points = solve_flank(member, "member", flank, blank_grid(member))
+    points = solve_flank(member, flank, blank_grid(member))
     theta, beside = points.contact[:, 2], points.contact[:, :2] + [0.2, 0.013]
     blade = moved_edge.blade_of(member, flank)
     if method in FORMATE:

@@ -27,7 +27,7 @@ def test_flanks_of_all_spaces_keep_the_tolerance(
     member = gear_set.member(name)
     text = cutting_program(gear_set, name, vertical, "HOB", CuttingJob(range(member.teeth), TOLERANCE))
     path = execute(text, "HOB.MPF")
-    deviation = mill_member(path, member, name, vertical).deviation
+    deviation = mill_member(path, member, vertical).deviation
     assert len(deviation) == 2 * (45 + member.teeth - 1)
     assert np.abs(deviation).max() <= TOLERANCE
-    assert 0.7 * TOLERANCE <= left_at_borders(path, member, name, vertical).max() <= TOLERANCE
+    assert 0.7 * TOLERANCE <= left_at_borders(path, member, vertical).max() <= TOLERANCE

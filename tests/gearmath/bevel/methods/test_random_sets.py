@@ -95,7 +95,7 @@ def audit(gear_set, moved_edge) -> Counter:
                 counts["missed"] += int(lost.sum())
                 counts["absent"] += int((~lost).sum())
                 with pytest.raises(InputError, match=rf"^{name} {flank} flank, row \d+, column \d+: "):
-                    solve_flank(member, name, flank, grid)
+                    solve_flank(member, flank, grid)
     return counts
 
 
@@ -128,7 +128,7 @@ def test_undercut_is_reported_as_such_by_member_flank_row_and_column(pair):
     member = pair(Method("fixed_setting"), pinion_teeth=7, wheel_teeth=43).pinion
     for flank in FLANKS:
         with pytest.raises(InputError, match=f"^pinion {flank} flank, row 0, column 0: .*undercut"):
-            solve_flank(member, "pinion", flank, blank_grid(member))
+            solve_flank(member, flank, blank_grid(member))
 
 
 def test_of_random_sets_at_most_a_fifth_is_rejected_and_999_of_1000_points_are_found(sensible, moved_edge):

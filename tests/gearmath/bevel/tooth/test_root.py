@@ -39,7 +39,7 @@ def test_slot_of_a_cut_of_both_flanks_is_the_point_width_of_its_cutter(name: str
     one blade of a hobbing cutter follows the other."""
     spec = member(name, which)
     width = spec.concave.blade_point_radius - spec.convex.blade_point_radius
-    _, slots = space_widths(spec, which)
+    _, slots = space_widths(spec)
     for flank in FLANKS:
         assert places(slots[flank]) == pytest.approx([width] * 3, abs=2e-3 if spec.blade_groups else 5e-4)
 
@@ -48,14 +48,14 @@ def test_root_of_a_formate_space_is_the_point_width_of_its_cutter() -> None:
     """Nothing rolls: the root lies between two circles of the cutter about one axis, here as polygons."""
     spec = member("crown_gear_formate_14x39", "gear")
     width = spec.concave.blade_point_radius - spec.convex.blade_point_radius
-    root, _ = space_widths(spec, "gear")
+    root, _ = space_widths(spec)
     assert [*places(root), root.least, root.most] == pytest.approx([width] * 5, abs=5e-5)
 
 
 def test_generated_root_is_narrower_than_its_slot_as_the_root_of_the_virtual_gear_is_smaller_than_its_pitch_circle():
     """A flat of a rack that rolls on r leaves an arc of r_f / r of its width on the root circle r_f."""
     spec = member("nasa_tp3096_12x36", "pinion")
-    root, slots = space_widths(spec, "pinion")
+    root, slots = space_widths(spec)
     virtual = 81.0514 * math.tan(math.radians(18.4333333)) / math.cos(math.radians(35)) ** 2
     assert root.mean / slots["concave"].mean == pytest.approx(1 - 2.216780765284 / virtual, abs=2e-3)
 
@@ -88,6 +88,6 @@ def test_mean_slot_of_a_pinion_cut_flank_by_flank_is_that_of_agma_929(ratio: tup
     )
     pair, blank = crown_gear_set(data, Method("fixed_setting"), Method()), blank_of(data)
     _, wanted, _ = slots_of(blank).pinion.slot_width
-    _, slots = space_widths(pair.pinion, "pinion")
+    _, slots = space_widths(pair.pinion)
     for flank in FLANKS:
         assert slots[flank].mean == pytest.approx(wanted, abs=0.01 * blank.mean_normal_module)

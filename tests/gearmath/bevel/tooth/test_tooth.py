@@ -34,7 +34,7 @@ def nasa() -> BevelSet:
 @pytest.fixture(scope="module", params=MEMBERS)
 def rounded(request: pytest.FixtureRequest, nasa: BevelSet) -> tuple[Member, ToothSpace]:
     member = with_flanks(nasa.member(request.param), blade_edge_radius=EDGE)
-    return member, tooth_space(member, request.param, columns=9)
+    return member, tooth_space(member, columns=9)
 
 
 def height(member: Member, point: np.ndarray) -> np.ndarray:
@@ -84,9 +84,8 @@ def test_fillet_leaves_the_flank_smoothly_and_is_as_round_as_the_edge(rounded: t
 
 def test_normals_are_those_of_the_surface(rounded: tuple[Member, ToothSpace]) -> None:
     member, _ = rounded
-    name = "pinion" if member.hand == "left" else "gear"
     for flank in FLANKS:
-        surface = flank_surface(member, name, flank, columns=161)
+        surface = flank_surface(member, flank, columns=161)
         along = surface.point[:, 2:] - surface.point[:, :-2]
         rows = [k for k, part in enumerate(surface.section) if part == "main"]
         upward = surface.point[[k - 1 for k in rows[1:-1]]] - surface.point[[k + 1 for k in rows[1:-1]]]
@@ -116,7 +115,7 @@ def test_other_hand_is_the_mirror_image(nasa: BevelSet) -> None:
         update={"hand": "left", "concave": mirrored(member.concave), "convex": mirrored(member.convex)}
     )
     for flank in FLANKS:
-        first, second = (flank_surface(m, "gear", flank, columns=7) for m in (member, other))
+        first, second = (flank_surface(m, flank, columns=7) for m in (member, other))
         np.testing.assert_allclose(second.point * [1, -1, 1], first.point, atol=1e-9)
         np.testing.assert_allclose(second.normal * [1, -1, 1], first.normal, atol=1e-9)
 
@@ -142,9 +141,7 @@ def test_mean_thickness_equals_the_mean_points_of_the_publication(nasa: BevelSet
 
 
 def test_sharp_edge_leaves_the_flank_as_it_is(nasa: BevelSet) -> None:
-    sharp, round_ = (
-        flank_surface(m, "gear", "convex", 5) for m in (nasa.gear, with_flanks(nasa.gear, blade_edge_radius=EDGE))
-    )
+    sharp, round_ = (flank_surface(m, "convex", 5) for m in (nasa.gear, with_flanks(nasa.gear, blade_edge_radius=EDGE)))
     np.testing.assert_allclose(sharp.point[0], round_.point[0], atol=1e-10)
     assert (height(nasa.gear, sharp.lower_limit) < height(nasa.gear, round_.lower_limit) - 0.1).all()
 
@@ -152,5 +149,5 @@ def test_sharp_edge_leaves_the_flank_as_it_is(nasa: BevelSet) -> None:
 def test_too_high_a_tooth_is_found_to_be_pointed(nasa: BevelSet) -> None:
     blank = nasa.pinion.blank.model_copy(update={"mean_addendum": nasa.pinion.blank.mean_addendum + 4.0})
     high = with_flanks(nasa.pinion, blade_profile_height=20.0).model_copy(update={"blank": blank})
-    assert (tooth_space(high, "pinion", 5).top_land < 0).all()
-    assert (tooth_space(nasa.pinion, "pinion", 5).top_land > 0).all()
+    assert (tooth_space(high, 5).top_land < 0).all()
+    assert (tooth_space(nasa.pinion, 5).top_land > 0).all()

@@ -69,9 +69,9 @@ def test_the_flanks_are_within_the_tolerance_of_the_path_mode(live: Start) -> No
     assert len(here.axes) > 1000 * plan.seconds
 
     linear, _ = machine.control.path_tolerance
-    allowed = path_share(gear, "gear", machine, linear, turned_at_corners(plan.passes, linear))
-    left = mill_member(here, gear, "gear", machine).deviation
-    meant = mill_member(commanded, gear, "gear", machine).deviation
+    allowed = path_share(gear, machine, linear, turned_at_corners(plan.passes, linear))
+    left = mill_member(here, gear, machine).deviation
+    meant = mill_member(commanded, gear, machine).deviation
     assert np.abs(left - meant).max() < allowed + PRINTED
     assert np.abs(left).max() < plan.job.tolerance + allowed + PRINTED
     # the header states what corners that are left farther than P would do

@@ -71,7 +71,7 @@ def some_points(
 ) -> tuple[str, Targets]:
     """A program that touches the reference points of both flanks of some teeth."""
     member = bevel_set.member(MEMBER)
-    targets, level, room = probed(member, MEMBER, machine, calibration, "POINTS", (), True, ())
+    targets, level, room = probed(member, machine, calibration, "POINTS", (), True, ())
     targets = targets.pick(targets.tooth < teeth)
     notes = (*probing_notes(bevel_set, MEMBER, machine, calibration, len(targets), 1),)
     text = write_touches("POINTS", notes, targets, MEMBER, member.teeth, machine, calibration, level, room)
@@ -139,7 +139,7 @@ def flanks_in_c(
     """C that tells whether the tip of the probe touches: it does within the metal at one of the tangent planes."""
     member = bevel_set.member(MEMBER)
     grid = blank_grid(member)
-    found = {flank: solve_flank(member, MEMBER, flank, grid) for flank in FLANKS}
+    found = {flank: solve_flank(member, flank, grid) for flank in FLANKS}
     shape = grid.shape
     rows = []
     for k in range(len(targets)):
@@ -298,7 +298,7 @@ def test_offsets_and_tool_lengths_are_in_the_touches_and_a_point_that_is_not_the
     tip, _ = kernel("probe_tip")(touches, height, offset, shifted.pivot)
     member = bevel_set.member(MEMBER)
     for k, (flank, tooth) in enumerate(zip(targets.flank[:3], targets.tooth[:3], strict=True)):
-        points = solve_flank(member, MEMBER, flank, blank_grid(member))
+        points = solve_flank(member, flank, blank_grid(member))
         at = len(points.point) // 2  # the reference point
         angle = 2 * np.pi * tooth / member.teeth
         away = (tip[k] - turned(points.point[at], angle)) @ turned(points.normal[at], angle)

@@ -34,9 +34,9 @@ def _direct(
     calibration = load_calibration(bundled(CALIBRATION))
     spec = load_pair(gear_set).member(MEMBER)
     quiet = shop.model_copy(update={"probe": Probe()})
-    file = mill_member(execute(cut, "CUT.MPF", Setup.of(machine)), spec, MEMBER, machine, quiet)
-    metal = MilledSurface(file, spec, MEMBER, "metal")
-    there = ProbeMachine(spec, MEMBER, machine, calibration, metal, metal.lowest, shop.measuring_clamp(MEMBER))
+    file = mill_member(execute(cut, "CUT.MPF", Setup.of(machine)), spec, machine, quiet)
+    metal = MilledSurface(file, spec, "metal")
+    there = ProbeMachine(spec, machine, calibration, metal, metal.lowest, shop.measuring_clamp(MEMBER))
     setup = Setup.of(machine, calibration.length)
     text = run_touches(probe, "PROBE.MPF", there, shop, touch_count(probe, "P", setup), number, setup=setup)
     lines = [line.split(",") for line in text.splitlines() if line[:1].isdigit()]

@@ -134,8 +134,8 @@ def test_an_abort_is_the_alarm_of_a_program() -> None:
 
 def judged(text: str, pair: BevelSet, machine: MillingMachine) -> str:
     path = execute(text, "CUT", Setup.of(machine))
-    runs = runs_of(path, pair.member("gear"), "gear", machine, None)
-    return "; ".join(map(str, faults_of(text, path, runs, pair.member("gear"), "gear", machine)))
+    runs = runs_of(path, pair.member("gear"), machine, None)
+    return "; ".join(map(str, faults_of(text, path, runs, pair.member("gear"), machine)))
 
 
 def test_a_right_program_has_no_faults(text: str, pair: BevelSet, machine: MillingMachine) -> None:

@@ -179,7 +179,7 @@ class Dense:
         spec = load_bevel_set(bundled(f"{self.name}.toml")).member(self.member)
         self.spec, self.height = spec, MACHINE.gauge_line_height + MACHINE.tool_length
         self.axes = np.array([row.at for row in self.rows])
-        for cut in Cut.of(spec, self.member):
+        for cut in Cut.of(spec):
             found = [flank_points(spec, flank, blank_grid(spec, 8, 160, 0.0)) for flank in cut.flanks]
             self.points[cut.tool] = (
                 np.concatenate([one.point for one in found]),
@@ -216,7 +216,7 @@ class Dense:
 
     def blades(self, tool):
         """Outer and inner cone; of one flank only, a narrow one."""
-        cut = next(cut for cut in Cut.of(self.spec, self.member) if cut.tool == tool)
+        cut = next(cut for cut in Cut.of(self.spec) if cut.tool == tool)
         given = {SIDES[flank]: self.blade(flank) for flank in cut.flanks}
         if len(given) == 1:
             ((side, own),) = given.items()

@@ -84,12 +84,12 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
     and after it cut the flank clean, the block ends farther beside its path than ``mill`` lets it.
     """
     spec, height = gear_set.member(member), vertical.pivot_height
-    cut = Cut.of(spec, member)[index]
+    cut = Cut.of(spec)[index]
     text = cutting_program(gear_set, member, vertical, "CUT", CuttingJob((0,), TOLERANCE))
     path = execute(text, "CUT")
-    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7))
+    runs = runs_of(path, spec, vertical, None, tooth_space(spec, 7))
     run = runs[index]
-    rounding = control_share(spec, member, vertical).rounding
+    rounding = control_share(spec, vertical).rounding
     theta = roll_nodes(spec, cut, TOLERANCE, height, rounding=rounding)
     lines, limit = text.split("\n"), beside_limit(vertical, Stated.of(text))
     cutting = [k for k in run.line.tolist() if " G93 " in lines[k - 1]]
@@ -172,7 +172,7 @@ def test_every_wrong_digit_is_refused_or_seen(gear_set, vertical, witness, host_
         far = aside(run, int(np.flatnonzero(run.line == line)[0]), poses[rest, 0], spec, vertical)
         unseen += [texts[k] for k, aside_by in zip(rest, far, strict=True) if aside_by <= limit]
         if n % 40 == 20:
-            check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation, wanted)
+            check_in_full(gear_set, spec, vertical, text, line, texts, deviation, wanted)
     print(f"\n{cut.tool}: {demanded} demanded, {refused} refused, {cleaned} not in metal, {len(unseen)} unseen")
     assert demanded > 10_000
     assert refused > 100
@@ -201,13 +201,13 @@ def blocks_of(body):
                 yield from inside
 
 
-def check_in_full(gear_set, spec, member, vertical, text, line, texts, deviation, wanted):
+def check_in_full(gear_set, spec, vertical, text, line, texts, deviation, wanted):
     """The first demanded mutation of a block through reader, executor and the watch of ``gearmath mill``: the same."""
     lines = text.split("\n")
     k = int(np.flatnonzero(wanted)[len(texts) // 3 % wanted.sum()])
     lines[line - 1] = texts[k]
     path = execute("\n".join(lines), "CUT")
-    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
+    runs = runs_of(path, spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     found = watch(runs, spec, vertical, None)
     beside = [fault.line for fault in beside_the_path(runs, spec, vertical, Stated.of(text))]
     assert abs(found.worst[0]) > TOLERANCE or line in beside, texts[k]
@@ -220,7 +220,7 @@ def test_right_program_leaves_no_more_than_it_states_and_stays_on_its_path(gear_
     spec = gear_set.member(member)
     text = cutting_program(gear_set, member, vertical, "CUT", CuttingJob((0, 2)))
     assert stated_tolerance(text) == TOLERANCE
-    runs = runs_of(execute(text, "CUT"), spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
+    runs = runs_of(execute(text, "CUT"), spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     found = watch(runs, spec, vertical, None)
     assert found.uncut == 0
     assert -TOLERANCE <= found.lowest <= found.highest <= TOLERANCE
@@ -240,7 +240,7 @@ def test_block_that_ends_beside_its_path_is_named_with_what_it_is_off_by(gear_se
     """By hand: Z by 2 um, either way, or A or B by 20 urad at the heel."""
     spec, reach = gear_set.gear, gear_set.gear.blank.mean_cone_distance + gear_set.gear.blank.face_width / 2
     text = cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0,)))
-    (run,) = runs_of(execute(text, "CUT"), spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    (run,) = runs_of(execute(text, "CUT"), spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     axes, row = run.axes.copy(), len(run.axes) // 2
     axes[row, axis] += off
     (fault,) = beside_the_path([replace(run, axes=axes)], spec, vertical, Stated.of(text))
@@ -254,7 +254,7 @@ def test_no_corner_of_the_flank_is_left_out(gear_set, vertical, host_compiler):
     no line with the watch, finds nowhere a deeper place by more than a twentieth of the tolerance."""
     spec = gear_set.gear
     path = execute(cutting_program(gear_set, "gear", vertical, "CUT", CuttingJob((0,))), "CUT")
-    (run,) = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    (run,) = runs_of(path, spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     points = [flank_points(spec, flank, blank_grid(spec, 6, 161, 0.0)) for flank in ("concave", "convex")]
     kept = [one.contact[:, 0] >= 0.0 for one in points]  # below the blade's end there is no flank
     point = np.concatenate([one.point[k] for one, k in zip(points, kept, strict=True)])
@@ -279,7 +279,7 @@ def test_peak_that_a_wrong_end_leaves_between_two_blocks_is_not_missed(vertical,
     bevel_set = load_bevel_set(bundled("crown_gear_universal_14x39.toml"))
     spec = bevel_set.pinion
     path = execute(cutting_program(bevel_set, "pinion", vertical, "CUT", CuttingJob((0,))), "CUT")
-    runs = runs_of(path, spec, "pinion", vertical, None, tooth_space(spec, "pinion", 7), SHARP_EDGE)
+    runs = runs_of(path, spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     tip = flank_points(spec, "convex", blank_grid(spec, 3, 1601, 0.0))
     place = next(k for k, run in enumerate(runs) if "convex" in run.cut.flanks)
     run, rows = runs[place], slice(len(tip.point) // 3, None)  # the foot is left out
@@ -316,7 +316,7 @@ def test_wrong_digit_of_approach_plunge_or_retract_is_seen(gear_set, vertical, h
     head, rest = text[:begin], text[begin:]
     assert right in rest
     path = execute(head + rest.replace(right, wrong, 1), "CUT")
-    runs = runs_of(path, spec, "gear", vertical, None, tooth_space(spec, "gear", 7), SHARP_EDGE)
+    runs = runs_of(path, spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     beside = [*beside_the_path(runs, spec, vertical, Stated.of(text))]
     assert watch(runs, spec, vertical, None).lowest < -1e-3 or beside or rapid_approaches(runs, spec, vertical)
 

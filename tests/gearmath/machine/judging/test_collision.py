@@ -20,14 +20,14 @@ from gearmath.specs.simulated_machine import CutterHead, Fixture
 @pytest.fixture(scope="module")
 def job(gear_set, program, vertical):
     path = program(gear_set, "gear", (0, 7))
-    return path, runs_of(path, gear_set.gear, "gear", vertical, None)
+    return path, runs_of(path, gear_set.gear, vertical, None)
 
 
 @pytest.mark.parametrize("member", MEMBERS)
 def test_bundled_programs_collide_with_nothing(gear_set, program, vertical, member):
     path = program(gear_set, member, (0, 3))
     spec = gear_set.member(member)
-    runs = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 5))
+    runs = runs_of(path, spec, vertical, None, tooth_space(spec, 5))
     assert collisions(path, runs, gear_set.member(member), vertical) == []
 
 

@@ -50,15 +50,15 @@ def judged(widened, vertical):
     """A program of one corrected space, its tools, and ``judge(runs)``: the sentences, and what the root keeps [mm]."""
     gear_set = widened(FLANKS)
     spec = gear_set.pinion
-    space = tooth_space(spec, "pinion", 7)
+    space = tooth_space(spec, 7)
     text = cutting_program(gear_set, "pinion", vertical, "CUT", CuttingJob((0,), 1e-4))
-    runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "pinion", vertical, None, space, SHARP_EDGE)
+    runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, vertical, None, space, SHARP_EDGE)
     made = as_cut(spec, space)
-    own = tooth_space(made, "pinion", 7)
+    own = tooth_space(made, 7)
 
     def judge(runs, made=made):
-        faults = [str(one) for one in metal_left(runs, made, "pinion", vertical, Stated.of(text), own).faults]
-        *_, root = surface_states(None, made, "pinion", vertical, None, (0,), runs=runs, space=own)
+        faults = [str(one) for one in metal_left(runs, made, vertical, Stated.of(text), own).faults]
+        *_, root = surface_states(None, made, vertical, None, (0,), runs=runs, space=own)
         return faults, root
 
     return made, runs, judge
@@ -68,17 +68,17 @@ def judged(widened, vertical):
 def test_correction_changes_no_cutter(widened, flanks):
     """Of neither flank, though one alone was corrected: the root that both cut has another slot for each of them."""
     spec = widened(flanks).pinion
-    space = tooth_space(spec, "pinion", 3)
+    space = tooth_space(spec, 3)
     made = as_cut(spec, space)
-    own = tooth_space(made, "pinion", 3)
+    own = tooth_space(made, 3)
     assert all(abs(own.slots[flank].most - space.slots[flank].most) > 0.01 for flank in FLANKS)  # mm
-    for cut in Cut.of(spec, "pinion"):
+    for cut in Cut.of(spec):
         assert cutter_of(made, cut.flanks, own) == cutter_of(spec, cut.flanks, space)
 
 
 def test_stated_point_width_and_a_member_that_was_not_corrected_stay_as_they_are(widened):
     spec = load_bevel_set(bundled(DESIGNED)).pinion
-    space = tooth_space(spec, "pinion", 3)
+    space = tooth_space(spec, 3)
     assert as_cut(spec, space) == spec
     stated = widened(FLANKS).pinion
     stated = stated.model_copy(

@@ -43,11 +43,11 @@ def written(case, machine=MACHINE, control="sinumerik", **job):
 def judged(case, text, machine=MACHINE):
     """The sentences of mill, and the tolerance [mm] that the flanks were compared with."""
     spec = load_bevel_set(bundled(f"{case[0]}.toml")).member(case[1])
-    space = None if spec.process == "face_hobbing" else tooth_space(spec, case[1], 7)
+    space = None if spec.process == "face_hobbing" else tooth_space(spec, 7)
     path = execute(text, "CUT", Setup.of(machine))
-    runs = runs_of(path, spec, case[1], machine, None, space, SHARP_EDGE)
-    left = metal_faults(text, path, runs, spec, case[1], machine, space)
-    return [str(one) for one in (*left.faults, *faults_of(text, path, runs, spec, case[1], machine))], left.tolerance
+    runs = runs_of(path, spec, machine, None, space, SHARP_EDGE)
+    left = metal_faults(text, path, runs, spec, machine, space)
+    return [str(one) for one in (*left.faults, *faults_of(text, path, runs, spec, machine))], left.tolerance
 
 
 def bent(text, pattern, wrong):

@@ -30,7 +30,7 @@ def text(gear_set, vertical):
 
 @pytest.fixture(scope="module")
 def space(gear_set):
-    return tooth_space(gear_set.gear, "gear", 7)
+    return tooth_space(gear_set.gear, 7)
 
 
 @pytest.fixture
@@ -39,8 +39,8 @@ def judged(gear_set, vertical, space):
 
     def judge(text, machine=vertical):
         path = execute(text, "CUT", Setup.of(machine))
-        runs = runs_of(path, gear_set.gear, "gear", machine, None, space, SHARP_EDGE)
-        return [str(fault) for fault in faults_of(text, path, runs, gear_set.gear, "gear", machine)]
+        runs = runs_of(path, gear_set.gear, machine, None, space, SHARP_EDGE)
+        return [str(fault) for fault in faults_of(text, path, runs, gear_set.gear, machine)]
 
     return judge
 
@@ -203,8 +203,8 @@ def test_hobbed_block_beside_its_path_is_seen_in_every_axis(vertical):
 
     def said(text):
         path = execute(text, "CUT", Setup.of(vertical))
-        runs = runs_of(path, spec, "gear", vertical, None)
-        return [str(one) for one in faults_of(text, path, runs, spec, "gear", vertical)]
+        runs = runs_of(path, spec, vertical, None)
+        return [str(one) for one in faults_of(text, path, runs, spec, vertical)]
 
     assert said(text) == []
     lines = text.split("\n")
@@ -221,8 +221,8 @@ def test_stock_gouge_and_missing_metal_are_said_without_a_report(gear_set, verti
     spec = gear_set.gear
 
     def left(text):
-        runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
-        found = metal_left(runs, spec, "gear", vertical, Stated.of(text), space)
+        runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, vertical, None, space, SHARP_EDGE)
+        found = metal_left(runs, spec, vertical, Stated.of(text), space)
         return [str(one) for one in found.faults]
 
     assert left(text) == []
@@ -242,11 +242,11 @@ def test_program_with_index_corrections_is_judged_by_the_places_that_they_ask_fo
     wanted = tuple(0.004 * (k % 3 - 1) for k in range(gear_set.gear.teeth))  # up to 0.004 degrees, about 9 um
     spec = gear_set.gear.model_copy(update={"index_correction": wanted})
     corrected = gear_set.model_copy(update={"gear": spec})
-    space = tooth_space(spec, "gear", 7)
+    space = tooth_space(spec, 7)
 
     def left(text):
-        runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, "gear", vertical, None, space, SHARP_EDGE)
-        return [str(one) for one in metal_left(runs, spec, "gear", vertical, Stated.of(text), space).faults]
+        runs = runs_of(execute(text, "CUT", Setup.of(vertical)), spec, vertical, None, space, SHARP_EDGE)
+        return [str(one) for one in metal_left(runs, spec, vertical, Stated.of(text), space).faults]
 
     job = CuttingJob((0, 2), 1e-3)
     assert left(cutting_program(corrected, "gear", vertical, "CUT", job)) == []
@@ -323,17 +323,17 @@ def test_dynamics_are_those_of_the_machine_file(text, judged):
 def crawl(vertical):
     """The sentences that a text for a member of a set earns for blocks that take long."""
 
-    def judge(text, spec, name):
+    def judge(text, spec):
         path = execute(text, "CUT", Setup.of(vertical))
-        space = None if spec.process == "face_hobbing" else tooth_space(spec, name, 7)
-        return crawling(path, runs_of(path, spec, name, vertical, None, space), spec, vertical, Stated.of(text))
+        space = None if spec.process == "face_hobbing" else tooth_space(spec, 7)
+        return crawling(path, runs_of(path, spec, vertical, None, space), spec, vertical, Stated.of(text))
 
     return judge
 
 
 def test_blocks_that_crawl_are_named_with_their_time_and_what_the_program_states(gear_set, vertical, text, crawl):
     """A hundredth of F in the middle of a roll, a fiftieth in all of it; F of G93 read in mm/min in a plunge."""
-    assert crawl(text, gear_set.gear, "gear") == []
+    assert crawl(text, gear_set.gear) == []
     lines = text.split("\n")
     rolls = [k for k, line in enumerate(lines) if " G93 G1 X" in line]
     k = rolls[len(rolls) // 3]
@@ -341,25 +341,25 @@ def test_blocks_that_crawl_are_named_with_their_time_and_what_the_program_states
     slow = "\n".join([*lines[:k], re.sub(r" F[0-9.]+", f" F{value:.6f}", lines[k]), *lines[k + 1 :]])
     minutes, speed = 1 / value, 3.0  # F of G93 is one over minutes; 300 mm/min are stated
     said = rf"a block crawls: line {k + 1}, {minutes:.1f} min at {speed:.2g} mm/min, the program states 300 mm/min: "
-    assert re.match(said, crawl(slow, gear_set.gear, "gear")[0])
+    assert re.match(said, crawl(slow, gear_set.gear)[0])
     every = re.sub(r"(G93 G1 X.* F)([0-9.]+)", lambda found: f"{found[1]}{float(found[2]) / 50:.6f}", text)
-    assert re.match(r"\d+ blocks crawl, the longest is line ", crawl(every, gear_set.gear, "gear")[0])
+    assert re.match(r"\d+ blocks crawl, the longest is line ", crawl(every, gear_set.gear)[0])
     formate = load_bevel_set(bundled("crown_gear_formate_14x39.toml"))
     down = cutting_program(formate, "gear", vertical, "CUT", CuttingJob((0,)))
-    without = crawl(bent(down, r"G93 (G1 .*)", r"\1"), formate.gear, "gear")
+    without = crawl(bent(down, r"G93 (G1 .*)", r"\1"), formate.gear)
     assert re.search(r"at 15 mm/min, the program states 200 mm/min: look at its F and G93", without[0])
     nothing_stated = re.sub(r"^; feed.*\n", "", slow, flags=re.MULTILINE)
-    assert re.search(r"at 3 mm/min, most blocks have 300 mm/min", crawl(nothing_stated, gear_set.gear, "gear")[0])
+    assert re.search(r"at 3 mm/min, most blocks have 300 mm/min", crawl(nothing_stated, gear_set.gear)[0])
 
 
 def test_hobbing_crawls_where_its_cutter_hardly_turns_and_not_where_the_tolerance_wants_a_slow_roll(vertical, crawl):
     bevel_set = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml"))
     text = cutting_program(bevel_set, "pinion", vertical, "CUT", CuttingJob(range(14), 5e-3))
-    assert crawl(text, bevel_set.pinion, "pinion") == []
+    assert crawl(text, bevel_set.pinion) == []
     lines = text.split("\n")
     k = [k for k, line in enumerate(lines) if " G93 G1 " in line][40]
     slow = "\n".join([*lines[:k], re.sub(r" F[0-9.]+", " F0.05", lines[k]), *lines[k + 1 :]])
-    (said,) = crawl(slow, bevel_set.pinion, "pinion")
+    (said,) = crawl(slow, bevel_set.pinion)
     assert re.match(
         rf"a block crawls: line {k + 1}, 20.0 min at 0\.\d+ rpm of C, the program states 120 rpm of C", said
     )

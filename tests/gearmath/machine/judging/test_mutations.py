@@ -184,15 +184,15 @@ def test_what_changed_blocks_spoil_is_what_mill_finds_of_the_whole_part(case):
         assert len(spoils) > 5
     for line, new in spoils[:: max(len(spoils) // 2, 1)][:2]:
         path = execute(whole.with_lines(line, new), "CUT", Setup.of(MACHINE))
-        assert whole.metal(runs_of(path, whole.spec, whole.member, MACHINE, None, whole.space, SHARP_EDGE))
+        assert whole.metal(runs_of(path, whole.spec, MACHINE, None, whole.space, SHARP_EDGE))
 
 
-def hobbed_path(text, spec, member):
+def hobbed_path(text, spec):
     """The path of a hobbing program, (n,6) and the time of every block; None if mill refuses it or sees something."""
     try:
         path = execute(text, "CUT", Setup.of(MACHINE))
-        runs = runs_of(path, spec, member, MACHINE, None, None, SHARP_EDGE)
-        if faults_of(text, path, runs, spec, member, MACHINE):
+        runs = runs_of(path, spec, MACHINE, None, None, SHARP_EDGE)
+        if faults_of(text, path, runs, spec, MACHINE):
             return None
     except InputError:
         return None
@@ -210,7 +210,7 @@ def test_what_passes_of_wrong_hobbing_programs_is_the_right_path_within_the_tole
     bevel_set, tolerance = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml")), 5e-4
     spec = bevel_set.member(member)
     text = cutting_program(bevel_set, member, MACHINE, "CUT", CuttingJob(range(spec.teeth), tolerance=tolerance))
-    right, seconds = hobbed_path(text, spec, member)
+    right, seconds = hobbed_path(text, spec)
     assert np.nan_to_num(np.diff(right, axis=0)).any(axis=1).all()
     cuts = seconds > 0
     fastest = np.nanmax(np.abs(np.diff(right[:, 5]))[cuts[1:]] / seconds[cuts])
@@ -220,7 +220,7 @@ def test_what_passes_of_wrong_hobbing_programs_is_the_right_path_within_the_tole
     changed = [*wrong_digits(whole, 20, 1, random), *sample_of(others(whole), 14, random)]
     passed = 0
     for kind, line, new in changed:
-        found = hobbed_path("\n".join([*whole.lines[: line - 1], *new, *whole.lines[line:]]), spec, member)
+        found = hobbed_path("\n".join([*whole.lines[: line - 1], *new, *whole.lines[line:]]), spec)
         if found is None:
             continue
         passed += 1

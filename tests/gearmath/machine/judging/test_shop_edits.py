@@ -33,7 +33,7 @@ def programs():
             text = linuxcnc_program(cutting_plan(bevel_set, "gear", MACHINE, job), "CUT")
         else:
             text = cutting_program(bevel_set, "gear", MACHINE, "CUT", job)
-        found[key] = text, bevel_set.gear, tooth_space(bevel_set.gear, "gear", 7)
+        found[key] = text, bevel_set.gear, tooth_space(bevel_set.gear, 7)
     return found
 
 
@@ -45,8 +45,8 @@ def said_of(program, pattern=None, wrong="", count=1):
         assert found, pattern
     try:
         path = execute(text, "CUT", Setup.of(MACHINE))
-        runs = runs_of(path, spec, "gear", MACHINE, None, space, SHARP_EDGE)
-        return [str(one) for one in faults_of(text, path, runs, spec, "gear", MACHINE)]
+        runs = runs_of(path, spec, MACHINE, None, space, SHARP_EDGE)
+        return [str(one) for one in faults_of(text, path, runs, spec, MACHINE)]
     except InputError as error:
         return [str(error)]
 

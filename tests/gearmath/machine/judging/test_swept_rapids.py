@@ -93,7 +93,7 @@ def test_rapid_moves_that_meet_the_work_are_all_said(gear_set, vertical, member)
     path = execute(
         cutting_program(gear_set, member, vertical, "CUT", CuttingJob((0,), 5e-3)), "CUT", Setup.of(vertical)
     )
-    (run, *_) = runs_of(path, spec, member, vertical, None, tooth_space(spec, member, 7), SHARP_EDGE)
+    (run, *_) = runs_of(path, spec, vertical, None, tooth_space(spec, 7), SHARP_EDGE)
     solid, points = Solid(spec, vertical.fixture), tool_points(run, vertical)
     middle = run.axes[run.cutting].mean(axis=0)
     random, met, unseen, alarms = np.random.default_rng(11), 0, [], 0

@@ -115,7 +115,7 @@ class Whole:
         self.spec = bevel_set.member(self.member)
         self.text = self.written(bevel_set, CuttingJob(self.spaces or range(self.spec.teeth)))
         self.lines = self.text.split("\n")
-        self.space = tooth_space(self.spec, self.member, 7)
+        self.space = tooth_space(self.spec, 7)
         self.stated = Stated.of(self.text)
         self.path = execute(self.text, "CUT", Setup.of(MACHINE))
         self._run_right()
@@ -131,8 +131,8 @@ class Whole:
         """What mill says of a whole text: a list of sentences, or what refuses it."""
         try:
             path = execute(text, "CUT", Setup.of(MACHINE))
-            runs = runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
-            found = [str(one) for one in faults_of(text, path, runs, self.spec, self.member, MACHINE)]
+            runs = runs_of(path, self.spec, MACHINE, None, self.space, SHARP_EDGE)
+            found = [str(one) for one in faults_of(text, path, runs, self.spec, MACHINE)]
             if everything and not found:
                 found = self.metal(runs)
         except InputError as error:
@@ -141,7 +141,7 @@ class Whole:
 
     def metal(self, runs):
         """What mill says of the metal that runs of a tool leave."""
-        left = metal_left(runs, self.spec, self.member, MACHINE, self.stated, self.space)
+        left = metal_left(runs, self.spec, MACHINE, self.stated, self.space)
         return [str(one) for one in left.faults]
 
     def _run_right(self):
@@ -333,7 +333,7 @@ class Whole:
 
     @cached_property
     def runs(self):
-        return runs_of(self.path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
+        return runs_of(self.path, self.spec, MACHINE, None, self.space, SHARP_EDGE)
 
     @cached_property
     def off(self):
@@ -389,7 +389,7 @@ class Whole:
                     | {"tool": np.zeros(int(some.sum()), int), "line": told[some]}
                 ),
             )
-            return path, runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
+            return path, runs_of(path, self.spec, MACHINE, None, self.space, SHARP_EDGE)
 
         path, runs = together(np.full(len(told), True))
         found = [
@@ -436,7 +436,7 @@ class Whole:
         assert self.stated.stock == 0.0
         tolerance = self.stated.tolerance
         *surfaces, root = nominal_surfaces(self.spec, self.space)
-        surfaces.append(generated_root(root, self.spec, self.member, self.space))
+        surfaces.append(generated_root(root, self.spec, self.space))
         found = []
         for space in self.spaces:
             for one in watched_flanks(self.spec, runs, MACHINE):
@@ -472,7 +472,7 @@ class Whole:
             for key in KEYS
         }
         path = MachinePath(tools=self.path.tools, cutter=np.full(len(both["line"]), np.nan), **both)
-        runs = runs_of(path, self.spec, self.member, MACHINE, None, self.space, SHARP_EDGE)
+        runs = runs_of(path, self.spec, MACHINE, None, self.space, SHARP_EDGE)
         tool = int(own["tool"][0])
         before = int((self.path.tool[:first] == tool).sum())
         (run,) = (run for run in runs if run.cut.tool == self.path.tools[tool])

@@ -36,11 +36,11 @@ def test_cheap_probe_sees_what_the_exact_contact_search_sees(gear_set):
     """Every distance within a step: its touches end where those of the contact search do, to some 5 um."""
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=(), around=(0, 5))
     heard = []
-    found = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, progress=heard.append))
+    found = of(approaches(text, "P", gear_set.pinion, MACHINE, PROBE, progress=heard.append))
     moves = 1 + 3 * 2 * (13 + 2 * 4)  # from home; sideways, down, touch: 13 reference points, 2 * 4 corners
     assert moves < sum(heard) <= moves + text.count("\n")
-    there = ProbeMachine(gear_set.pinion, "pinion", MACHINE, PROBE)
-    exact = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, PROBE, probe=there))
+    there = ProbeMachine(gear_set.pinion, MACHINE, PROBE)
+    exact = of(approaches(text, "P", gear_set.pinion, MACHINE, PROBE, probe=there))
     assert found.keys() == exact.keys()
     for pair, one in found.items():
         assert one.distance == pytest.approx(exact[pair].distance, abs=0.1)
@@ -56,7 +56,7 @@ def test_distance_to_the_fixture_is_that_of_the_tip_beside_it_by_hand(gear_set):
         X, Y, Z, A, B = tip_positions(tip, np.zeros(1), np.radians(16.87), MACHINE, PROBE)[0]
         words = f"X{X:.6f} Y{Y:.6f} Z{Z:.6f} A=DC({np.degrees(A):.6f}) B{np.degrees(B):.6f}"
         text = f'G17 G40 G90 G710 G94 G54\nT="PROBE" D1\nM6\nSPOS=0\nG0 {words}\nG0 Y{Y:.6f}\nM30\n'
-        found = of(approaches(text, "P", member, "pinion", MACHINE, PROBE, fixture))
+        found = of(approaches(text, "P", member, MACHINE, PROBE, fixture))
         assert found["tip", "fixture"].distance == pytest.approx(gap, abs=2e-6)
 
 
@@ -71,7 +71,7 @@ def line_down(program, change):
 def test_tip_that_goes_down_too_far_is_found_with_its_line(gear_set, program):
     """20 mm too far is in the root."""
     text, line = line_down(program, 20.0)
-    found = of(approaches(text, "P", gear_set.gear, "gear", MACHINE, PROBE))
+    found = of(approaches(text, "P", gear_set.gear, MACHINE, PROBE))
     assert found["tip", "teeth"].line == line
     assert found["tip", "teeth"].distance < -1.0
 
@@ -82,7 +82,7 @@ def test_rapid_block_through_far_teeth_is_found(gear_set, program):
     lines = text.split("\n")
     k = next(k for k, line in enumerate(lines) if " G1 X=" in line and "MEAS" not in line)
     lines[k] += "\nG0 Y=UWAY[UPLACE,1]+30"
-    found = of(approaches("\n".join(lines), "P", gear_set.gear, "gear", MACHINE, PROBE))
+    found = of(approaches("\n".join(lines), "P", gear_set.gear, MACHINE, PROBE))
     assert found["tip", "teeth"].distance < -0.5
     assert found["tip", "teeth"].line in (k + 2, k + 3)
     assert found["stylus", "teeth"].distance < 0.0
@@ -92,7 +92,7 @@ def test_gear_that_stands_half_a_pitch_off_is_met(gear_set, program):
     """The tip goes down into the metal of a tooth."""
     half = re.sub(r"(UTURN\[\d+\]=)(\S+)", lambda m: f"{m[1]}{float(m[2]) + 5.0}", program)
     assert half.count("UTURN") == program.count("UTURN") > 36
-    found = of(approaches(half, "P", gear_set.gear, "gear", MACHINE, PROBE))
+    found = of(approaches(half, "P", gear_set.gear, MACHINE, PROBE))
     assert found["tip", "teeth"].distance < -0.5
 
 
@@ -101,7 +101,7 @@ def test_fixture_close_behind_the_heel_is_met_by_the_spindle_of_a_short_probe(ge
     short = PROBE.model_copy(update={"length": 60.0})
     text = probing_program(gear_set, "pinion", MACHINE, short, "PROBE", pitch=False)
     fixture = Fixture(radius=radius, shank_length=5.0)
-    found = of(approaches(text, "P", gear_set.pinion, "pinion", MACHINE, short, fixture))
+    found = of(approaches(text, "P", gear_set.pinion, MACHINE, short, fixture))
     assert (found["spindle", "fixture"].distance < 0.0) is meets
     assert found["spindle", "teeth"].distance > 0.0
 
@@ -112,12 +112,7 @@ def test_spindle_stands_as_far_above_the_teeth_as_the_probe_is_long(gear_set):
     near, far = (
         of(
             approaches(
-                probing_program(gear_set, "pinion", MACHINE, one, "PROBE", topography=()),
-                "P",
-                member,
-                "pinion",
-                MACHINE,
-                one,
+                probing_program(gear_set, "pinion", MACHINE, one, "PROBE", topography=()), "P", member, MACHINE, one
             )
         )["spindle", "teeth"].distance
         for one in (PROBE.model_copy(update={"length": length}) for length in (60.0, 200.0))
@@ -132,7 +127,7 @@ def test_program_that_touches_nothing_is_refused_with_line_and_alarm(gear_set, p
     lifted = program.replace("Z=UWAY[UPLACE,5] A", "Z=UWAY[UPLACE,5]+50 A")
     assert lifted != program
     with pytest.raises(InputError, match=r"P, line \d+, column 1: the program sets alarm 65001 on the nominal member"):
-        approaches(lifted, "P", gear_set.gear, "gear", MACHINE, PROBE)
+        approaches(lifted, "P", gear_set.gear, MACHINE, PROBE)
 
 
 @pytest.mark.parametrize(

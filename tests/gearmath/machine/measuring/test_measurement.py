@@ -21,7 +21,7 @@ def true_file(gear_set, name, deviation=0.0):
     grid, files = blank_grid(member), []
     for flank in FLANKS:
         for tooth in range(member.teeth):
-            one = nominal_flank(member, name, flank, grid, tooth=tooth)
+            one = nominal_flank(member, flank, grid, tooth=tooth)
             keep = np.full(len(one), tooth == 0) | ((one.row == 2) & (one.col == 4))
             point, normal, n = one.point[keep], one.normal[keep], int(keep.sum())
             files.append(
@@ -63,7 +63,7 @@ def azimuth(file, k):
 @pytest.mark.parametrize("name", MEMBERS)
 def test_perfect_measurement_shows_the_metal_and_tooth_0_twice(gear_set, name):
     true, member = true_file(gear_set, name, 0.01), gear_set.member(name)
-    seen = measure_member(true, member, name, shop())
+    seen = measure_member(true, member, shop())
     assert len(seen) == len(true) + 10
     np.testing.assert_allclose(seen.deviation, 0.01, rtol=0, atol=1e-12)
     np.testing.assert_array_equal(seen.tooth[-10:], member.teeth)
@@ -80,7 +80,7 @@ def test_clamping_moves_the_work_against_the_probe(gear_set, name):
     """δ = (e + ω × R)·n to first order: the opposite of what the same seat does to the cut."""
     seat = Mounting(eccentricity=0.02, eccentricity_direction=35.0, tilt=0.01, tilt_direction=-70.0)
     clamp = SimulatedMeasuring(**{name: seat})
-    seen = measure_member(true_file(gear_set, name), gear_set.member(name), name, shop(measuring=clamp))
+    seen = measure_member(true_file(gear_set, name), gear_set.member(name), shop(measuring=clamp))
     at, about = math.radians(35.0), math.radians(-70.0)
     e = 0.02 * np.array([math.cos(at), math.sin(at), 0.0])
     omega = math.radians(0.01) * np.array([math.cos(about), math.sin(about), 0.0])
@@ -96,7 +96,7 @@ def test_drift_grows_evenly_from_the_first_touch_to_the_last(gear_set, name):
     """The work moves by d in the machine: d·(M(B) Rz(-A) n), and so the repeated tooth is off its first touch."""
     member, d = gear_set.member(name), np.array([0.003, 0.004, -0.005])
     drift = SimulatedMeasuring(drift=Drift(X_um=3.0, Y_um=4.0, Z_um=-5.0))
-    seen = measure_member(true_file(gear_set, name), member, name, shop(measuring=drift))
+    seen = measure_member(true_file(gear_set, name), member, shop(measuring=drift))
     for k in range(0, len(seen), 7):
         normal = to_machine(member, azimuth(seen, k), member.blank.root_angle) @ seen.normal[k]
         assert seen.deviation[k] == pytest.approx(k / (len(seen) - 1) * d @ normal, abs=1e-9)
@@ -106,7 +106,7 @@ def test_drift_grows_evenly_from_the_first_touch_to_the_last(gear_set, name):
 @pytest.mark.parametrize("name", MEMBERS)
 def test_lobes_follow_the_direction_of_the_touch_in_the_machine(gear_set, name):
     member = gear_set.member(name)
-    seen = measure_member(true_file(gear_set, name), member, name, shop(probe=Probe(lobing_um=2.0, lobing_phase=10.0)))
+    seen = measure_member(true_file(gear_set, name), member, shop(probe=Probe(lobing_um=2.0, lobing_phase=10.0)))
     for k in range(0, len(seen), 5):
         x, y, _ = to_machine(member, azimuth(seen, k), member.blank.root_angle) @ seen.normal[k]
         expected = 0.002 * math.cos(3 * (math.atan2(y, x) - math.radians(10.0))) * math.hypot(x, y)
@@ -117,8 +117,8 @@ def test_noise_is_that_of_the_average_and_its_own_in_every_run(gear_set):
     """0.8 um in a touch is 0.4 um in the average of four."""
     true, member = true_file(gear_set, "gear"), gear_set.member("gear")
     noisy = shop(probe=Probe(sigma_um=0.8, touches=4))
-    files: list[FlankFile] = [measure_member(true, member, "gear", noisy, run) for run in range(1, 41)]
-    again = measure_member(true, member, "gear", noisy, 1)
+    files: list[FlankFile] = [measure_member(true, member, noisy, run) for run in range(1, 41)]
+    again = measure_member(true, member, noisy, 1)
     np.testing.assert_array_equal(files[0].deviation, again.deviation)
     assert not np.isclose(files[0].deviation, files[1].deviation, rtol=0, atol=1e-9).any()
     everything = np.concatenate([file.deviation for file in files])

@@ -36,13 +36,13 @@ def probed(gear_set, tmp_path, errors, touches=None, run=1, spoil=lambda text: t
     """The pinion probed by the program's text on a machine that errs, its touches evaluated as if it did not."""
     member = gear_set.pinion
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", **options)
-    there = ErringProbe(ProbeMachine(member, "pinion", MACHINE, PROBE), errors, touches, run)
+    there = ErringProbe(ProbeMachine(member, MACHINE, PROBE), errors, touches, run)
     done = run_program(text, "PROBE.MPF", there)
     assert done.alarm is None
     file = tmp_path / "raw.csv"
     file.write_text(spoil(done.files["PROBE_T"]))
     assert touches in (None, there.count)
-    return measured_member(read_touch_csv(file), member, "pinion", MACHINE, PROBE)
+    return measured_member(read_touch_csv(file), member, MACHINE, PROBE)
 
 
 def nominal(gear_set, places):
@@ -50,7 +50,7 @@ def nominal(gear_set, places):
     grid, files = blank_grid(gear_set.pinion), []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=tooth)
+            one = nominal_flank(gear_set.pinion, flank, grid, tooth=tooth)
             here = places.select(flank, tooth)
             keep = here.row * 9 + here.col
             files.append(
@@ -77,7 +77,7 @@ def test_drift_and_lobes_are_those_of_the_simulated_measurement(gear_set, tmp_pa
         probe=Probe(lobing_um=2.0, lobing_phase=10.0),
     )
     seen = probed(gear_set, tmp_path, errors, touches=2 * (45 + 11 + 5))
-    expected = measure_member(nominal(gear_set, seen), gear_set.pinion, "pinion", errors)
+    expected = measure_member(nominal(gear_set, seen), gear_set.pinion, errors)
     for key in ("flank", "tooth", "row", "col"):
         np.testing.assert_array_equal(getattr(seen, key), getattr(expected, key))
     # the tip rolls by 5 um on the flank; straight ways of five decimals

@@ -100,17 +100,17 @@ def test_clamping_and_drift_of_a_run_are_those_of_the_simulated_measurement(gear
         ),
     )
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PP", topography=(0,))
-    there = ProbeMachine(member, "pinion", MACHINE, PROBE, seat=errors.measuring_clamp("pinion"))
+    there = ProbeMachine(member, MACHINE, PROBE, seat=errors.measuring_clamp("pinion"))
     (tmp_path / "raw.csv").write_text(run_touches(text, "PP.MPF", there, errors, touch_count(text, "PP.MPF")))
-    seen = measured_member(read_touch_csv(tmp_path / "raw.csv"), member, "pinion", MACHINE, PROBE)
+    seen = measured_member(read_touch_csv(tmp_path / "raw.csv"), member, MACHINE, PROBE)
     files = []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(member, "pinion", flank, blank_grid(member), tooth=tooth)
+            one = nominal_flank(member, flank, blank_grid(member), tooth=tooth)
             one = one.pick((tooth == 0) | ((one.row == 2) & (one.col == 4)))
             one.deviation[:] = 0.0
             files.append(one)
-    expected = measure_member(join(files), member, "pinion", errors)
+    expected = measure_member(join(files), member, errors)
     for key in ("flank", "tooth", "row", "col"):
         np.testing.assert_array_equal(getattr(seen, key), getattr(expected, key))
     assert np.ptp(expected.deviation) > 0.02

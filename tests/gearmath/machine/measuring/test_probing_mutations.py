@@ -255,7 +255,7 @@ class Judged:
     def seen(self, text):
         try:
             if self.member:
-                return bool(judge_probing(text, "T", SET.pinion, "pinion", MACHINE, PROBE))
+                return bool(judge_probing(text, "T", SET.pinion, MACHINE, PROBE))
             return bool(judge_calibration(text, "T", MACHINE, self.probe))
         except (InputError, ComputationError):
             return True
@@ -270,8 +270,7 @@ class Judged:
                 if deep is None:
                     try:
                         deep = min(
-                            a.distance
-                            for a in approaches(text, "T", SET.pinion, "pinion", MACHINE, PROBE, MACHINE.fixture)
+                            a.distance for a in approaches(text, "T", SET.pinion, MACHINE, PROBE, MACHINE.fixture)
                         )
                     except InputError:
                         return True  # it stops on the nominal member, and gearmath probe says so
@@ -349,7 +348,7 @@ def test_right_program_has_no_faults_and_does_no_harm(name):
 
 def faults(text):
     try:
-        return [str(one) for one in judge_probing(text, "T", SET.pinion, "pinion", MACHINE, PROBE)]
+        return [str(one) for one in judge_probing(text, "T", SET.pinion, MACHINE, PROBE)]
     except (InputError, ComputationError) as error:
         return [str(error)]
 

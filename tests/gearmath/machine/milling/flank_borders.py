@@ -16,11 +16,11 @@ _MAIN = 17
 _TEETH = 20
 
 
-def left_at_borders(path, spec, member, machine):
+def left_at_borders(path, spec, machine):
     """Distances (n,) [mm] of the flanks from the nominal ones."""
-    (run,) = runs_of(path, spec, member, machine, None, None, SHARP_EDGE)
+    (run,) = runs_of(path, spec, machine, None, None, SHARP_EDGE)
     angles = 2 * math.pi * np.arange(0, spec.teeth, 1 + spec.teeth // _TEETH) / spec.teeth
-    left, space = [], tooth_space(spec, member, 9)
+    left, space = [], tooth_space(spec, 9)
     for part in (getattr(space, flank) for flank in FLANKS):
         rows = [0, _MAIN - 1, part.section.index("edge") - 1]
         lines = (part.point[rows].reshape(-1, 3), part.normal[rows].reshape(-1, 3))

@@ -104,7 +104,7 @@ def test_first_cut_of_the_shop_errs_as_much_as_that_of_the_source_text(gear_set,
     assert 0.02 <= np.abs(file.deviation).max() <= 0.03
     spec = gear_set.member(member)
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        nominal = solve_flank(spec, flank, blank_grid(spec))
         wrong = spec.flank(flank).vector + shop.setting_errors(member)
         wrong[SETTINGS.index("work_rotation_offset")] -= index_errors(shop.work_axis, spec.teeth, shop.seed)[0]
         left, _ = witness.left_by_cradle(wrong, SIDES[flank], nominal.point, nominal.normal, nominal.contact[:, 2])
@@ -176,7 +176,7 @@ def test_offset_of_the_work_axis_turns_every_flank(gear_set, mill, member):
     """δ = ε (z_w × R)·n: 0.01 degrees."""
     file = mill(gear_set, member, errors=wrong(axes=AxisErrors(A=0.01)))
     for flank in FLANKS:
-        here = solve_flank(gear_set.member(member), member, flank, blank_grid(gear_set.member(member)))
+        here = solve_flank(gear_set.member(member), flank, blank_grid(gear_set.member(member)))
         lever = here.point[:, 0] * here.normal[:, 1] - here.point[:, 1] * here.normal[:, 0]
         np.testing.assert_allclose(file.select(flank).deviation, math.radians(0.01) * lever, rtol=0, atol=1.5e-4)
 
@@ -190,19 +190,19 @@ def test_eccentric_and_tilted_work_deviates_by_what_it_is_moved_against_the_cutt
     e = 0.02 * np.array([math.cos(at), math.sin(at), 0.0])
     omega = math.radians(0.01) * np.array([math.cos(about), math.sin(about), 0.0])
     for flank in FLANKS:
-        here = solve_flank(gear_set.member(member), member, flank, blank_grid(gear_set.member(member)))
+        here = solve_flank(gear_set.member(member), flank, blank_grid(gear_set.member(member)))
         expected = -((e + np.cross(omega, here.point)) * here.normal).sum(axis=1)
         np.testing.assert_allclose(file.select(flank).deviation, expected, rtol=0, atol=2e-4)
         assert np.ptp(expected) > 1e-3
 
 
-def by_rigid_motion(witness, spec, member, flank, height, moved):
+def by_rigid_motion(witness, spec, flank, height, moved):
     """What is left on the grid where the tool moves by ``moved`` (3,) in the machine at contact, against its teeth.
 
     ``moved`` gets X Y Z A B (5,) of the contact and its place in the machine p_m = M(B) Rz(-A) p_w, and everything is
     typed from the conventions.
     """
-    here = solve_flank(spec, member, flank, blank_grid(spec))
+    here = solve_flank(spec, flank, blank_grid(spec))
     axes = witness.vertical_axes(spec.flank(flank).vector, here.contact[:, 2], height)
     left = []
     for at, point, normal in zip(axes, here.point, here.normal, strict=True):
@@ -240,7 +240,7 @@ def one_space(gear_set, program, vertical):
     @cache
     def left(member, errors=None):
         shop = None if errors is None else wrong(axes=errors)
-        return mill_member(paths[member], gear_set.member(member), member, vertical, shop)
+        return mill_member(paths[member], gear_set.member(member), vertical, shop)
 
     return left
 
@@ -257,7 +257,7 @@ def test_axis_that_errs_leaves_what_the_rigid_motion_says(gear_set, one_space, v
     files = one_space(member, errors), one_space(member, opposite), one_space(member)
     for flank in FLANKS:
         one, other, nominal = (file.select(flank).deviation for file in files)
-        expected = by_rigid_motion(witness, gear_set.member(member), member, flank, vertical.pivot_height, moved)
+        expected = by_rigid_motion(witness, gear_set.member(member), flank, vertical.pivot_height, moved)
         assert np.abs(expected).max() > 10 * TOLERANCE
         np.testing.assert_allclose((one - other) / 2, expected, rtol=0, atol=TOLERANCE / 3)
         np.testing.assert_allclose((one + other) / 2, nominal, rtol=0, atol=TOLERANCE)
@@ -297,7 +297,7 @@ def test_ball_screw_ripple_does_not_hide_between_the_ends_of_blocks(gear_set, pr
     fine = replace(coarse, axes=axes, inner=np.zeros(len(own), dtype=bool), **others)
     member = gear_set.gear
     none, one, other = (
-        mill_member(path, member, "gear", vertical, errors).deviation
+        mill_member(path, member, vertical, errors).deviation
         for path, errors in ((coarse, None), (coarse, screw), (fine, screw))
     )
     assert np.abs(one - none).max() > 1e-3
@@ -329,7 +329,7 @@ def test_backlash_turns_a_milled_flank_by_half_of_it_against_the_roll(gear_set, 
         (direction,) = set(np.sign(steps[np.abs(steps) > 1e-9]).tolist())
     offset = AxisErrors(A=-direction * 10.0 / 3600)
     one, other, none = (
-        mill_member(path, gear_set.member(member), member, vertical, errors).deviation
+        mill_member(path, gear_set.member(member), vertical, errors).deviation
         for errors in (wrong(axes=AxisErrors(A_backlash_arcsec=20.0)), wrong(axes=offset), None)
     )
     assert np.abs(one - none).max() > 5e-4

@@ -91,7 +91,7 @@ def test_blades_leave_flanks_fillets_and_root_of_the_set() -> None:
     """By the crossings of single blades with lines through the nominal surfaces."""
     member = pair().member("pinion")
     assert abs(member.concave.cutter_tilt) > 3
-    for state in surface_states(path(), member, "pinion", machine(), spaces=(7,)):
+    for state in surface_states(path(), member, machine(), spaces=(7,)):
         assert state.unmet == 0, state
         assert state.lowest > -1e-4, state
         assert state.highest < 2e-3, state  # scallops of a coarse program
@@ -101,7 +101,7 @@ def test_tips_of_one_height_part_in_the_middle_of_the_space() -> None:
     """By what each kind of blade alone leaves of the root: that is why the tips have heights."""
 
     def step(member: Member) -> float:
-        space = tooth_space(member, "pinion", 7)
+        space = tooth_space(member, 7)
         *_, root = nominal_surfaces(member, space)
         middle = root.row == 1
         heights = []
@@ -127,10 +127,10 @@ def test_root_of_a_formate_gear_is_where_its_blades_leave_it() -> None:
     made = accepted(checked(TILTED | NARROW[0], DesignData, "narrow"))[0].pair
     member = made.member("gear")
     assert member.concave.blade_tip_height == member.convex.blade_tip_height == 0
-    space = tooth_space(member, "gear", 7)
+    space = tooth_space(member, 7)
     cutting = execute(cutting_program(made, "gear", machine(), "HOB", CuttingJob(range(38), 5e-4)), "HOB.MPF")
-    runs = runs_of(cutting, member, "gear", machine(), None, space)
-    for state in surface_states(None, member, "gear", machine(), spaces=(2,), runs=runs, space=space):
+    runs = runs_of(cutting, member, machine(), None, space)
+    for state in surface_states(None, member, machine(), spaces=(2,), runs=runs, space=space):
         assert state.unmet == 0, state
         assert max(-state.lowest, state.highest) < 2e-4, state
 
@@ -140,10 +140,10 @@ def test_tips_of_a_space_that_narrows_towards_the_toe_stay_off_the_other_fillet(
     """By the crossings of single blades, as above; a tip that is a tenth of a millimetre longer cuts into it."""
     made = accepted(checked(TILTED | changes, DesignData, "narrow"))[0].pair
     member = made.member("pinion")
-    space = tooth_space(member, "pinion", 7)
-    runs = runs_of(path_of(made), member, "pinion", machine(), None, space)
+    space = tooth_space(member, 7)
+    runs = runs_of(path_of(made), member, machine(), None, space)
     (run,) = runs
-    for state in surface_states(None, member, "pinion", machine(), spaces=(2,), runs=runs, space=space):
+    for state in surface_states(None, member, machine(), spaces=(2,), runs=runs, space=space):
         assert state.unmet == 0, state
         assert state.lowest > -1e-4, state
         assert state.highest < 2e-3, state
@@ -152,14 +152,14 @@ def test_tips_of_a_space_that_narrows_towards_the_toe_stay_off_the_other_fillet(
         for edge in run.blades.edges
     )
     runs = [replace(run, blades=replace(run.blades, edges=longer))]
-    states = surface_states(None, member, "pinion", machine(), spaces=(2,), runs=runs, space=space)
+    states = surface_states(None, member, machine(), spaces=(2,), runs=runs, space=space)
     assert min(state.lowest for state in states if state.surface == "concave fillet") < -5e-3
 
 
 def test_tips_cover_the_root_from_toe_to_heel() -> None:
     """What a round takes of a tip is r (1 - sin α) / cos α."""
     member = pair().member("pinion")
-    _, slots = space_widths(member, "pinion")
+    _, slots = space_widths(member)
     tips = {edge.flank: edge.upper - edge.lower for edge in blades_of(member).edges if edge.part == "tip"}
     reach = 0.0
     for flank in FLANKS:
@@ -218,4 +218,4 @@ def test_milled_blades_have_no_tips_of_their_own() -> None:
     gear = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).member("gear")
     values = gear.convex.model_copy(update={"blade_tip_height": 0.1})
     with pytest.raises(InputError, match=r"^gear\.convex\.blade_tip_height = 0\.1: belongs to face_hobbing"):
-        check_blades(gear.model_copy(update={"convex": values}), "gear")
+        check_blades(gear.model_copy(update={"convex": values}))

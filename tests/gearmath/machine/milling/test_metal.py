@@ -22,8 +22,8 @@ SHOP = load_simulated_machine(bundled("source_experiment.toml")).model_copy(
 @pytest.mark.slow
 def test_metal_is_what_the_milling_leaves_at_the_same_points(program, vertical):
     path = program(SET, "pinion", range(7))
-    found = metal(path, SET.pinion, "pinion", vertical, SHOP, whole=(0,), around=(2, 4))
-    milled = mill_member(path, SET.pinion, "pinion", vertical, SHOP)
+    found = metal(path, SET.pinion, vertical, SHOP, whole=(0,), around=(2, 4))
+    milled = mill_member(path, SET.pinion, vertical, SHOP)
     assert len(found) == 2 * (45 + 2 * 5 + 4)
     for flank in FLANKS:
         for tooth in range(7):
@@ -39,4 +39,4 @@ def test_metal_is_what_the_milling_leaves_at_the_same_points(program, vertical):
         shape = [first.deviation[(first.row == row) & (first.col == col)][0] for row, col in places]
         assert np.abs(np.diff(corners.deviation) - np.diff(shape)).max() < 1e-3
     with pytest.raises(InputError, match=r"the program leaves the con(cave|vex) flank of space \d uncut at row"):
-        metal(program(SET, "pinion", (0,)), SET.pinion, "pinion", vertical)
+        metal(program(SET, "pinion", (0,)), SET.pinion, vertical)

@@ -68,10 +68,10 @@ def test_cutter_ten_micrometres_too_large_shifts_the_whole_cone_along_its_normal
         gear_set, member, flank, design=nominal_settings(spec), blade_point_radius=spec.blade_point_radius + 0.01
     )
     path = program(gear_set, member)
-    file = mill_member(path, larger.member(member), member, vertical).select(flank)
+    file = mill_member(path, larger.member(member), vertical).select(flank)
     by_hand = -SIDES[flank] * 0.01 * math.cos(math.radians(spec.blade_pressure_angle))
     np.testing.assert_allclose(file.deviation, by_hand, rtol=0, atol=1.5e-4)  # straight blocks 1e-4, second order
-    nominal = solve_flank(gear_set.member(member), member, flank, blank_grid(gear_set.member(member)))
+    nominal = solve_flank(gear_set.member(member), flank, blank_grid(gear_set.member(member)))
     (sensitivity,) = kernel("setting_sensitivity")(*nominal.contact.T, spec.vector, SIDES[flank])
     predicted = 0.01 * sensitivity[:, SETTINGS.index("blade_point_radius")]
     np.testing.assert_allclose(file.deviation, predicted, rtol=0, atol=1.5e-4)
@@ -80,7 +80,7 @@ def test_cutter_ten_micrometres_too_large_shifts_the_whole_cone_along_its_normal
 def test_program_with_the_tool_of_the_other_member_is_refused(gear_set, program, vertical):
     path = program(gear_set, "gear")
     with pytest.raises(InputError, match=r'T="GEAR"; the pinion is cut with PINION_CONCAVE and PINION_CONVEX$'):
-        mill_member(path, gear_set.pinion, "pinion", vertical)
+        mill_member(path, gear_set.pinion, vertical)
 
 
 def test_program_that_leaves_a_flank_out_is_refused(gear_set, vertical):
@@ -89,16 +89,16 @@ def test_program_that_leaves_a_flank_out_is_refused(gear_set, vertical):
     before = first_tool[: first_tool.rindex(" IF (R90")]  # the tool is changed where its sections are wanted
     shortened = before[: before.rindex("\n")] + "\nM30\n"
     with pytest.raises(InputError, match=r"^the program does not cut the convex flank of the pinion$"):
-        mill_member(execute(shortened, "P.MPF"), gear_set.pinion, "pinion", vertical)
+        mill_member(execute(shortened, "P.MPF"), gear_set.pinion, vertical)
     with pytest.raises(InputError, match=r"^the program does not cut the concave flank of the gear$"):
-        mill_member(execute("M30\n", "P.MPF"), gear_set.gear, "gear", vertical)
+        mill_member(execute("M30\n", "P.MPF"), gear_set.gear, vertical)
 
 
 def test_half_a_roll_leaves_metal_on_the_end_of_the_tooth_that_it_does_not_reach(gear_set, vertical):
     lines = cutting_program(gear_set, "gear", vertical, "GEAR").split("\n")
     rolls = [k for k, line in enumerate(lines) if " G93 " in line]
     kept = [line for k, line in enumerate(lines) if k not in rolls[len(rolls) // 2 :]]
-    file = mill_member(execute("\n".join(kept), "P.MPF"), gear_set.gear, "gear", vertical)
+    file = mill_member(execute("\n".join(kept), "P.MPF"), gear_set.gear, vertical)
     for flank in FLANKS:
         deviation = file.select(flank).deviation.reshape(5, 9)
         assert deviation[:, 0].max() > 0.1
@@ -110,20 +110,20 @@ def test_cutter_lifted_out_of_the_space_leaves_it_uncut(gear_set, vertical):
     path = execute(text, "P.MPF")
     path.axes[:, 2] += 30.0
     with pytest.raises(InputError, match=r"^the program leaves the concave flank of space 0 uncut at row 0, col 0$"):
-        mill_member(path, gear_set.gear, "gear", vertical)
+        mill_member(path, gear_set.gear, vertical)
 
 
 def test_progress_counts_both_flanks_of_every_space(gear_set, program, vertical):
     counts = []
-    mill_member(program(gear_set, "gear", (0, 5)), gear_set.gear, "gear", vertical, progress=counts.append)
+    mill_member(program(gear_set, "gear", (0, 5)), gear_set.gear, vertical, progress=counts.append)
     assert sum(counts) == 4
 
 
 def test_probe_noise_is_seeded_has_its_size_and_moves_the_touched_points(gear_set, program, vertical, shop):
     probe_only = shop.model_copy(update={"pinion": type(shop.pinion)(), "work_axis": type(shop.work_axis)()})
     path = program(gear_set, "pinion", range(12))
-    true = mill_member(path, gear_set.pinion, "pinion", vertical)
-    seen, again = (mill_member(path, gear_set.pinion, "pinion", vertical, probe_only) for _ in range(2))
+    true = mill_member(path, gear_set.pinion, vertical)
+    seen, again = (mill_member(path, gear_set.pinion, vertical, probe_only) for _ in range(2))
     np.testing.assert_array_equal(seen.deviation, again.deviation)
     noise = seen.deviation - true.deviation
     assert np.std(noise) == pytest.approx(5e-4, rel=0.25)  # 112 points of sigma 0.5 µm

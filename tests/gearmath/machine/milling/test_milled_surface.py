@@ -37,7 +37,7 @@ def form(flank, up, along):
 
 def of_form(member, flank, tooth, keep, shape=(5, 9)):
     """Points of one flank of one tooth: the form, and the turn of the space by its lever, written out here."""
-    one = nominal_flank(member, "pinion", flank, blank_grid(member, *shape), tooth=tooth)
+    one = nominal_flank(member, flank, blank_grid(member, *shape), tooth=tooth)
     lever = one.point[:, 0] * one.normal[:, 1] - one.point[:, 1] * one.normal[:, 0]
     up, along = 2 * one.row / (shape[0] - 1) - 1, 2 * one.col / (shape[1] - 1) - 1
     found = form(flank, up, along) + TURN[tooth] * lever
@@ -64,12 +64,12 @@ def whole(member, shape=(5, 9)):
 def test_probing_a_milled_member_finds_its_form_and_its_pitch(gear_set, tmp_path):
     """Grid of tooth 0, corners of teeth 3 and 7 that the file does not have, tooth 0 again: all within 10 nm."""
     member = gear_set.pinion
-    metal = MilledSurface(whole(member), member, "pinion", "m.csv")
+    metal = MilledSurface(whole(member), member, "m.csv")
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PP", around=(3, 7))
-    done = run_program(text, "P.MPF", ProbeMachine(member, "pinion", MACHINE, PROBE, metal, metal.lowest))
+    done = run_program(text, "P.MPF", ProbeMachine(member, MACHINE, PROBE, metal, metal.lowest))
     assert done.alarm is None
     (tmp_path / "raw.csv").write_text(done.files["PP_T"])
-    seen = measured_member(read_touch_csv(tmp_path / "raw.csv"), member, "pinion", MACHINE, PROBE)
+    seen = measured_member(read_touch_csv(tmp_path / "raw.csv"), member, MACHINE, PROBE)
     assert len(seen) == 2 * (45 + 11 + 2 * 4 + 5)
     assert np.ptp(seen.deviation) > 0.05  # more than the body of the probe machine is good to
     for flank in FLANKS:
@@ -84,7 +84,7 @@ def test_probing_a_milled_member_finds_its_form_and_its_pitch(gear_set, tmp_path
 def test_cubic_form_comes_back_between_the_points_of_every_grid(gear_set, shape):
     """Cubic splines with their ends free have a cubic exactly; the reference point of another grid is another one."""
     member = gear_set.pinion
-    metal = MilledSurface(whole(member, shape), member, "pinion", "m.csv")
+    metal = MilledSurface(whole(member, shape), member, "m.csv")
     fine = blank_grid(member, 17, 25)
     for flank in FLANKS:
         for row, col in ((0, 0), (3, 7), (8, 12), (13, 1), (16, 24)):
@@ -111,7 +111,7 @@ def test_points_of_a_tooth_that_is_not_in_full_come_back(gear_set):
         own.normal,
         own.deviation + off,
     )
-    metal = MilledSurface(join([file.pick((file.tooth != 5) | (file.flank != "convex")), moved]), member, "pinion", "m")
+    metal = MilledSurface(join([file.pick((file.tooth != 5) | (file.flank != "convex")), moved]), member, "m")
     grid = blank_grid(member)
     for k in range(len(moved)):
         place = np.array([grid.axial[moved.row[k], moved.col[k]], grid.radial[moved.row[k], moved.col[k]]])
@@ -121,7 +121,7 @@ def test_points_of_a_tooth_that_is_not_in_full_come_back(gear_set):
 def test_tooth_that_the_file_does_not_have_is_named(gear_set):
     member = gear_set.pinion
     file = whole(member)
-    metal = MilledSurface(file.pick(file.tooth != 4), member, "pinion", "m.csv")
+    metal = MilledSurface(file.pick(file.tooth != 4), member, "m.csv")
     with pytest.raises(InputError, match=r"m\.csv: holds no deviation on the convex flank of tooth 4"):
         metal("convex", 4, np.array([60.0, 20.0]))
     assert math.isclose(metal.lowest, file.deviation[file.tooth != 4].min())

@@ -120,7 +120,7 @@ def test_a_real_program_leaves_what_dense_sampling_finds(gear_set, vertical, pro
     path = program(gear_set, member, (0,), 2e-3)
     used = path.tool == (path.tools.index("PINION_CONVEX") if (member, flank) == ("pinion", "convex") else 0)
     axes, cutting = path.axes[used], ~path.rapid[used]
-    points = solve_flank(spec, member, flank, blank_grid(spec))
+    points = solve_flank(spec, flank, blank_grid(spec))
     settings, side = spec.flank(flank).vector, SIDES[flank]
     blade, height = Blade(settings[10], settings[11], side), vertical.pivot_height
     left = remaining(axes, cutting, blade, height, points.point, points.normal)

@@ -22,14 +22,14 @@ SURFACES = ("concave flank", "concave fillet", "convex flank", "convex fillet", 
 @pytest.fixture(scope="module")
 def gear_runs(gear_set, program, vertical):
     path = program(gear_set, "gear", (0, 1, 2))
-    space = tooth_space(gear_set.gear, "gear", 5)
-    return path, runs_of(path, gear_set.gear, "gear", vertical, None, space, SHARP_EDGE)
+    space = tooth_space(gear_set.gear, 5)
+    return path, runs_of(path, gear_set.gear, vertical, None, space, SHARP_EDGE)
 
 
 @pytest.fixture(scope="module")
 def states(gear_set, vertical, host_compiler):
     def of(path, runs, spaces=(0, 1, 2)):
-        found = surface_states(path, gear_set.gear, "gear", vertical, spaces=spaces, columns=5, runs=runs)
+        found = surface_states(path, gear_set.gear, vertical, spaces=spaces, columns=5, runs=runs)
         return {(state.space, state.surface): state for state in found}
 
     return of
@@ -43,7 +43,7 @@ def test_whole_program_leaves_fillets_roots_and_neighbours_of_every_space_withou
     """0.1 µm on flanks from tip to fillet and on the root, 0.12 µm on the fillet, which a corner of the cutter cuts."""
     spec = gear_set.member(member)
     path = program(gear_set, member, range(spec.teeth))
-    report = milling_report(path, spec, member, vertical, columns=5)
+    report = milling_report(path, spec, vertical, columns=5)
     assert {(s.space, s.surface) for s in report.surfaces} == {(k, s) for k in range(spec.teeth) for s in SURFACES}
     assert report.collisions == ()
     for state in report.surfaces:
@@ -59,10 +59,10 @@ def test_root_lies_on_the_root_cone_where_the_cutter_is_not_tilted(gear_set, hos
     """
     for name in MEMBERS:
         member = gear_set.member(name)
-        space = tooth_space(member, name, 5)
+        space = tooth_space(member, 5)
         *_, ruled = nominal_surfaces(member, space)
         ruled = replace(ruled, point=ruled.point + 0.05 * ruled.normal)
-        root = generated_root(ruled, member, name, space)
+        root = generated_root(ruled, member, space)
         heights = []
         for flank in FLANKS:
             spec = member.flank(flank)
@@ -119,7 +119,7 @@ def test_pass_far_off_its_space_cuts_into_the_neighbour(gear_runs, states):
 
 
 def test_surfaces_begin_their_lines_within_the_tooth(gear_set):
-    for surface in nominal_surfaces(gear_set.pinion, tooth_space(gear_set.pinion, "pinion", 5)):
+    for surface in nominal_surfaces(gear_set.pinion, tooth_space(gear_set.pinion, 5)):
         assert (surface.start < 0).all()
         assert (surface.start > -10).all()
         np.testing.assert_allclose(np.linalg.norm(surface.normal, axis=1), 1.0, atol=1e-9)

@@ -38,7 +38,7 @@ def deviations(gear_set, witness, moved_edge):
 
     def of_cut(member, number, margin=0.0, bevel_set=gear_set):
         spec = bevel_set.member(member)
-        cut = Cut.of(spec, member)[number]
+        cut = Cut.of(spec)[number]
         roll = roll_range(spec, cut)
         flanks = [
             _flank(witness, moved_edge.blade_of(spec, flank), roll, _points(spec, flank, margin))
@@ -165,7 +165,7 @@ def compared_with_the_fewest(left, spec, member, number, tolerances):
 
     At the full tolerance, of which roll_nodes keeps the rounding; 20 candidates in the shortest block.
     """
-    cut, rows = Cut.of(spec, member)[number], []
+    cut, rows = Cut.of(spec)[number], []
     for tolerance in tolerances:
         nodes = roll_nodes(spec, cut, tolerance, HEIGHT)
         spacing = np.diff(nodes)[:-1].min() / _CANDIDATES
@@ -207,7 +207,7 @@ def test_blocks_of_other_sets_are_near_the_fewest(deviations, name, member, numb
 def test_what_the_exact_path_cuts_beyond_the_flank_does_not_stop_the_blocks(tolerance):
     """The pinion of 7 teeth: past the heel its tool comes back into points that lie beyond the flank."""
     spec = load_bevel_set(bundled("spiral_7x43.toml")).pinion
-    assert 5 < len(roll_nodes(spec, Cut.of(spec, "pinion")[0], tolerance, HEIGHT)) < 80
+    assert 5 < len(roll_nodes(spec, Cut.of(spec)[0], tolerance, HEIGHT)) < 80
 
 
 @each_cut
@@ -215,7 +215,7 @@ def test_what_the_exact_path_cuts_beyond_the_flank_does_not_stop_the_blocks(tole
 def test_every_block_keeps_the_tolerance_and_uses_it(gear_set, deviations, member, number, tolerance):
     """By the witness: none leaves more than the tolerance less rounding, within 2 %; most leave nearly all of it."""
     spec = gear_set.member(member)
-    cut = Cut.of(spec, member)[number]
+    cut = Cut.of(spec)[number]
     nodes = roll_nodes(spec, cut, tolerance, HEIGHT)
     assert (nodes[0], nodes[-1]) == roll_range(spec, cut)
     assert (np.diff(nodes) > 0).all()
@@ -227,7 +227,7 @@ def test_every_block_keeps_the_tolerance_and_uses_it(gear_set, deviations, membe
 def test_blocks_keep_the_tolerance_where_the_flank_ends_in_an_undercut_before_the_blade_does(deviations):
     """A design of 7 teeth: its foot lies beyond the undercut, and no line of it holds the blocks back at the toe."""
     spec = accepted(mixed(31))[0].pair.pinion
-    nodes = roll_nodes(spec, Cut.of(spec, "pinion")[0], 1e-4, HEIGHT)
+    nodes = roll_nodes(spec, Cut.of(spec)[0], 1e-4, HEIGHT)
     left = deviations("pinion", 0, bevel_set=SimpleNamespace(member=lambda _: spec))(nodes[:-1], nodes[1:])
     assert left.max() <= 1.02 * (1e-4 - ROUNDING)
 
@@ -239,7 +239,7 @@ def test_blocks_keep_the_tolerance_a_little_beyond_the_flank(gear_set, deviation
     Otherwise a long block of the overrun, which no point of the flank held back, would cut them.
     """
     spec = gear_set.member(member)
-    nodes = roll_nodes(spec, Cut.of(spec, member)[number], 1e-4, HEIGHT)
+    nodes = roll_nodes(spec, Cut.of(spec)[number], 1e-4, HEIGHT)
     assert deviations(member, number, -0.01)(nodes[:-1], nodes[1:]).max() <= 1e-4
 
 
@@ -247,21 +247,21 @@ def test_blocks_keep_the_tolerance_a_little_beyond_the_flank(gear_set, deviation
 def test_blocks_within_the_flank_grow_with_the_root_of_the_tolerance(gear_set, member, number):
     """Limit case of short blocks: a hundredth of the deviation takes a tenth of the block."""
     spec = gear_set.member(member)
-    cut = Cut.of(spec, member)[number]
+    cut = Cut.of(spec)[number]
     coarse, fine = (np.median(np.diff(roll_nodes(spec, cut, ROUNDING + d, HEIGHT))) for d in (1e-3, 1e-5))
     assert coarse == pytest.approx(10 * fine, rel=0.05)
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1e-4, 0.9e-5, 0.2, float("nan"), float("inf")])
 def test_tolerance_out_of_range_is_refused_with_the_limits(gear_set, tolerance):
-    cut = Cut.of(gear_set.gear, "gear")[0]
+    cut = Cut.of(gear_set.gear)[0]
     with pytest.raises(InputError, match=r"^tolerance = .* um: must lie between 0.01 and 100 um; the printed decimals"):
         roll_nodes(gear_set.gear, cut, tolerance, HEIGHT)
 
 
 def test_blocks_do_not_depend_on_where_the_apex_lies_when_b_stands_still(gear_set):
     """Without tilt B is constant, so that an offset of the B axis shifts the whole path and bends nothing."""
-    cut = Cut.of(gear_set.gear, "gear")[0]
+    cut = Cut.of(gear_set.gear)[0]
     plain, offset = (
         roll_nodes(gear_set.gear, cut, 1e-3, HEIGHT, np.array(e)) for e in ([0.0, 0.0, 0.0], [12.0, -3.0, 45.0])
     )

@@ -20,7 +20,7 @@ def planned(vertical, name, member, **job):
 
 
 def loads(plan, member=None):
-    found = chip_loads(member or plan.member, plan.name, plan.machine, plan.passes, RPM, PLUNGE_FEED)
+    found = chip_loads(member or plan.member, plan.machine, plan.passes, RPM, PLUNGE_FEED)
     return {load.flank: load for load in found}
 
 

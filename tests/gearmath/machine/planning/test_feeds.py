@@ -69,7 +69,7 @@ def test_no_axis_exceeds_its_speed_or_acceleration(vertical, feed):
 def test_a_slow_roll_keeps_its_feed_and_a_fast_one_is_near_its_limits(gear_set, vertical, member):
     """Slow: acceleration costs next to nothing. Fast: some axis uses at least a third of what it has, everywhere."""
     spec = gear_set.member(member)
-    cut = Cut.of(spec, member)[0]
+    cut = Cut.of(spec)[0]
     axes = axis_positions(spec.flank(cut.flanks[0]), np.linspace(*roll_range(spec, cut), 100), vertical.pivot_height)
     free = block_seconds(axes, quick(vertical), 60.0, TOOTH)
     slow = block_seconds(axes, vertical, 60.0, TOOTH)

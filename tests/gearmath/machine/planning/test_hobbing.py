@@ -76,7 +76,7 @@ def cut(written, hobbed, vertical):
         key = (member, errors and errors.model_dump_json(), id(gear_set), *sorted(job.items()))
         if key not in files:
             path = execute(written(member, gear_set=gear_set, **job), "HOB.MPF")
-            files[key] = mill_member(path, gear_set.member(member), member, vertical, errors)
+            files[key] = mill_member(path, gear_set.member(member), vertical, errors)
         return files[key]
 
     return run
@@ -230,7 +230,7 @@ def test_border_of_the_flank_to_the_fillet_keeps_the_tolerance_and_needs_it(
         gear_set = changed(hobbed, member, **both(hobbed.member(member), toprem_angle=14.0, toprem_height=1.0))
     spec = gear_set.member(member)
     path = execute(written(member, gear_set=gear_set, tolerance=tolerance), "HOB.MPF")
-    highest = left_at_borders(path, spec, member, vertical).max()
+    highest = left_at_borders(path, spec, vertical).max()
     assert 0.7 * tolerance <= highest <= tolerance
 
 
@@ -294,13 +294,13 @@ def test_wrong_sign_of_indexing_is_seen(hobbed, vertical, written):
     """The work turning the wrong way past the blades destroys the teeth, by millimetres."""
     wrong = changed(hobbed, "gear", indexing_sign=-hobbed.gear.indexing_sign)
     path = execute(written("gear", gear_set=wrong), "HOB.MPF")
-    assert np.abs(mill_member(path, hobbed.gear, "gear", vertical).deviation).max() > 1.0
+    assert np.abs(mill_member(path, hobbed.gear, vertical).deviation).max() > 1.0
 
 
 def test_apex_off_the_b_axis_changes_the_axes_and_not_the_flanks(vertical, hobbed, written):
     shifted = vertical.model_copy(update={"pivot_offset": (12.0, -7.0, 30.0)})
     path = execute(written("gear", shifted), "HOB.MPF")
-    assert np.abs(mill_member(path, hobbed.gear, "gear", shifted).deviation).max() <= COARSE
+    assert np.abs(mill_member(path, hobbed.gear, shifted).deviation).max() <= COARSE
 
 
 def test_cutter_that_turns_the_other_way_cuts_the_same_flanks(vertical, hobbed, written):
@@ -308,7 +308,7 @@ def test_cutter_that_turns_the_other_way_cuts_the_same_flanks(vertical, hobbed, 
     text = written("gear", other)
     path = execute(text, "HOB.MPF")
     assert np.nanmin(np.diff(path.cutter[~path.rapid])) < -1 < 1 < np.max(np.diff(path.axes[~path.rapid, 3])) + 2
-    assert np.abs(mill_member(path, hobbed.gear, "gear", other).deviation).max() <= COARSE
+    assert np.abs(mill_member(path, hobbed.gear, other).deviation).max() <= COARSE
 
 
 @pytest.mark.parametrize("member", MEMBERS)
@@ -410,12 +410,12 @@ def test_faulty_jobs_are_refused(hobbed, vertical, job, sentence):
 
 def test_a_roll_of_more_turns_than_a_program_may_have_is_refused(hobbed, vertical):
     """Slower than any job may be: what a long roll of a large gear would need."""
-    (cut,) = Cut.of(hobbed.gear, "gear")
+    (cut,) = Cut.of(hobbed.gear)
     tooth = tooth_in_roll(hobbed.gear, cut)
     with pytest.raises(
         InputError, match=r"^gear: feed = 0\.0001 mm/min: .* turns of the work in the roll, 20000 at most$"
     ):
-        hobbing_motion(hobbed.gear, "gear", cut, vertical, 1e-4, 1e-4, 120.0, 0.0, 200.0, tooth)
+        hobbing_motion(hobbed.gear, cut, vertical, 1e-4, 1e-4, 120.0, 0.0, 200.0, tooth)
 
 
 def with_axes(machine, **axes):
@@ -442,17 +442,17 @@ def test_counting_c_is_written_as_it_counts(hobbed, vertical, written):
     path = execute(text, "HOB.MPF")
     same = execute(written("gear"), "HOB.MPF")
     assert np.nanmax(path.cutter) - np.nanmin(path.cutter) > 100
-    assert np.abs(mill_member(path, hobbed.gear, "gear", vertical).deviation).max() <= COARSE
+    assert np.abs(mill_member(path, hobbed.gear, vertical).deviation).max() <= COARSE
     assert len(path.axes) <= len(same.axes)
 
 
 def test_program_of_the_other_method_is_refused(hobbed, gear_set, vertical, written):
     milled = execute(cutting_program(gear_set, "gear", vertical, "GEAR", CuttingJob((0,), COARSE)), "GEAR.MPF")
     with pytest.raises(InputError, match=r"line \d+ cuts while the spindle is no axis C; the gear is face hobbed"):
-        mill_member(milled, hobbed.gear, "gear", vertical)
+        mill_member(milled, hobbed.gear, vertical)
     path = execute(written("gear"), "HOB.MPF")
     with pytest.raises(InputError, match=r"turns the cutter as axis C; the gear is face milled"):
-        mill_member(path, gear_set.gear, "gear", vertical)
+        mill_member(path, gear_set.gear, vertical)
 
 
 ROOM = Room(0.0, 0.0, 0.0)
@@ -497,16 +497,16 @@ def test_roughing_leaves_its_stock_and_finishing_takes_it(hobbed, vertical, writ
             for key in ("axes", "rapid", "tool", "tools", "line", "seconds", "rpm", "measuring", "cutter")
         },
     )
-    left = mill_member(rough, hobbed.gear, "gear", vertical).deviation
+    left = mill_member(rough, hobbed.gear, vertical).deviation
     assert left.min() == pytest.approx(0.2, abs=1e-3)
     assert left.max() < 0.2 + 0.02  # coarse: a part of the stock
-    assert np.abs(mill_member(path, hobbed.gear, "gear", vertical).deviation).max() <= COARSE
+    assert np.abs(mill_member(path, hobbed.gear, vertical).deviation).max() <= COARSE
 
 
 def test_dry_run_cuts_air(hobbed, vertical, written):
     path = execute(written("gear", dry_run=True), "HOB.MPF")
     with pytest.raises(InputError, match="uncut"):
-        mill_member(path, hobbed.gear, "gear", vertical)
+        mill_member(path, hobbed.gear, vertical)
 
 
 def shop(**errors):
@@ -551,7 +551,7 @@ def test_index_errors_of_the_work_axis_become_pitch(cut, hobbed):
     table = index_errors(axis, 39, 1)
     for flank in FLANKS:
         middle = (low.row == 2) & (low.col == 4) & (low.flank == flank)
-        beta = solve_flank(hobbed.gear, "gear", flank, blank_grid(hobbed.gear)).contact[2 * 9 + 4, 1]
+        beta = solve_flank(hobbed.gear, flank, blank_grid(hobbed.gear)).contact[2 * 9 + 4, 1]
         pitches = (low.tooth[middle] - hobbed.gear.indexing_sign * 13 * beta / (2 * math.pi)) % 39
         error = np.interp(pitches, np.arange(40), np.append(table, table[0]))
         nominal = low.point[middle] - low.deviation[middle, None] * low.normal[middle]
@@ -605,8 +605,8 @@ def test_setting_errors_act_like_cutting_with_those_settings(hobbed, gear_set, v
     errors = shop(gear=wrong)
     sets, job = (right, changed(right, "gear", **off)), CuttingJob(spaces, 3e-4)
     paths = [execute(cutting_program(one, "gear", vertical, "CUT", job), "CUT.MPF") for one in sets]
-    injected = mill_member(paths[0], gear, "gear", vertical, errors)
-    meant = mill_member(paths[1], gear, "gear", vertical)
+    injected = mill_member(paths[0], gear, vertical, errors)
+    meant = mill_member(paths[1], gear, vertical)
     assert np.abs(meant.deviation).max() > 5e-3
     np.testing.assert_allclose(injected.deviation, meant.deviation, rtol=0, atol=6e-4)
 
@@ -617,14 +617,14 @@ def test_report_finds_no_fault_in_a_right_program_and_times_c(hobbed, written, v
     """Flanks down to their fillets within 0.1 µm, no gouge anywhere; a fillet of 0.02 mm keeps scallops of some µm."""
     path = execute(written(member, tolerance=1e-4), "HOB.MPF")
     spec = hobbed.member(member)
-    space = tooth_space(spec, member, 5)
-    states = surface_states(path, spec, member, vertical, spaces=(0, spec.teeth - 1), columns=5, space=space)
+    space = tooth_space(spec, 5)
+    states = surface_states(path, spec, vertical, spaces=(0, spec.teeth - 1), columns=5, space=space)
     assert len(states) == 10
     for state in states:
         assert state.lowest > -1e-5, state
         assert state.highest < (5e-3 if "fillet" in state.surface else 1e-4), state
         assert state.line > 0
-    runs = runs_of(path, spec, member, vertical, None, space, SHARP_EDGE)
+    runs = runs_of(path, spec, vertical, None, space, SHARP_EDGE)
     assert collisions(path, runs, spec, vertical) == []
     C = timing(path, vertical).axes[-1]
     assert C.axis == "C"
@@ -635,7 +635,7 @@ def test_tip_that_is_too_deep_is_seen_in_fillet_and_root(hobbed, written, vertic
     """A blade 0.05 mm longer than the member's: its Z lies that much lower, and so does the root."""
     path = execute(written("gear"), "HOB.MPF")
     deeper = replace(path, axes=path.axes - np.array([0, 0, 0.05, 0, 0]))
-    states = surface_states(deeper, hobbed.gear, "gear", vertical, spaces=(3,), columns=5)
+    states = surface_states(deeper, hobbed.gear, vertical, spaces=(3,), columns=5)
     found = {state.surface: state for state in states}
     assert found["root"].lowest == pytest.approx(-0.05, abs=2e-3)
     assert found["concave flank"].lowest == pytest.approx(-0.05 * math.sin(math.radians(20)), abs=1e-3)
@@ -648,7 +648,7 @@ def test_rounded_edges_are_cut_without_gouge(hobbed, written, vertical, host_com
     highest = []
     for gear_set in (hobbed, other):
         path = execute(written("gear", gear_set=gear_set, tolerance=3e-4), "HOB.MPF")
-        states = surface_states(path, gear_set.gear, "gear", vertical, spaces=(1,), columns=5)
+        states = surface_states(path, gear_set.gear, vertical, spaces=(1,), columns=5)
         assert min(state.lowest for state in states) > -2e-5
         highest.append(max(state.highest for state in states if "fillet" in state.surface))
     assert highest[1] < highest[0] / 2
@@ -658,9 +658,9 @@ def test_toprem_takes_away_what_its_own_edge_sweeps(hobbed, written, vertical, h
     """A protuberance undercuts the flank above it; at the deepest place as the brute-force sweep of its edge says."""
     other = changed(hobbed, "gear", **both(hobbed.gear, toprem_angle=14.0, toprem_height=1.0))
     spec, path = other.gear.concave, execute(written("gear", gear_set=other), "HOB.MPF")
-    space = tooth_space(other.gear, "gear", 5)
+    space = tooth_space(other.gear, 5)
     flank = nominal_surfaces(other.gear, space)[0]
-    (run,) = runs_of(path, other.gear, "gear", vertical, None, space, SHARP_EDGE)
+    (run,) = runs_of(path, other.gear, vertical, None, space, SHARP_EDGE)
     left = expose([run], vertical, None, flank.point, flank.normal, flank.start).distance
     deepest = int(np.argmin(left))
     assert left[deepest] < -0.01
@@ -679,7 +679,7 @@ def test_arc_blades_are_cut_to_tolerance(hobbed, cut):
 def test_program_of_the_mate_is_refused(hobbed, written, vertical):
     path = execute(written("gear"), "HOB.MPF")
     with pytest.raises(InputError, match=r'the program cuts with T="GEAR"; the pinion is cut with PINION'):
-        mill_member(path, hobbed.pinion, "pinion", vertical)
+        mill_member(path, hobbed.pinion, vertical)
 
 
 def test_slow_cutter_spindle_makes_the_program_slower_and_a_faster_pass_is_refused(hobbed, vertical, written):
@@ -753,8 +753,8 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
     x, y = axis_positions(member.convex, border.contact[:, 2], vertical.pivot_height, vertical.pivot)[0, :2]
     text, changed_line = part_of_roll(written("gear", tolerance=1e-4), 30, x, y)
     path = execute("\n".join(text), "P")
-    parts: list = [solve_flank(member, "gear", flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
-    space = tooth_space(member, "gear", 21)
+    parts: list = [solve_flank(member, flank, blank_grid(member, 9, 21, 0.05)) for flank in FLANKS]
+    space = tooth_space(member, 21)
     parts += [border_of(getattr(space, flank)) for flank in FLANKS]  # most is left there where a visit is missing
     angles = [2 * math.pi * space / 39 for space in range(39)]
     point, normal = (
@@ -799,7 +799,7 @@ def test_a_wrong_digit_is_refused_or_seen_on_the_flanks_of_all_spaces(hobbed, wr
 def test_place_of_the_tooth_that_the_feed_counts_at_is_on_the_blade_when_it_is_met(hobbed, vertical, member):
     """Seen from the cutter's axis it lies on the cone of the blade, up to the offset of the blade."""
     spec = hobbed.member(member)
-    (cut,) = Cut.of(spec, member)
+    (cut,) = Cut.of(spec)
     flank = spec.flank(cut.flanks[0])
     u, _, theta = flank_points(spec, cut.flanks[0], blank_grid(spec, 1, 1)).contact[0]
     axes = axis_positions(flank, np.array([theta]), vertical.pivot_height, vertical.pivot)

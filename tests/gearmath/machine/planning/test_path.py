@@ -15,15 +15,15 @@ each_cut = pytest.mark.parametrize(("member", "number"), [("pinion", 0), ("pinio
 
 
 def the_cut(gear_set, member, number):
-    return Cut.of(gear_set.member(member), member)[number]
+    return Cut.of(gear_set.member(member))[number]
 
 
 def test_fixed_settings_have_a_tool_for_each_flank_and_a_completing_cut_has_one_for_both(gear_set):
-    assert [(cut.tool, cut.flanks) for cut in Cut.of(gear_set.pinion, "pinion")] == [
+    assert [(cut.tool, cut.flanks) for cut in Cut.of(gear_set.pinion)] == [
         ("PINION_CONCAVE", ("concave",)),
         ("PINION_CONVEX", ("convex",)),
     ]
-    assert [(cut.tool, cut.flanks) for cut in Cut.of(gear_set.gear, "gear")] == [("GEAR", ("concave", "convex"))]
+    assert [(cut.tool, cut.flanks) for cut in Cut.of(gear_set.gear)] == [("GEAR", ("concave", "convex"))]
 
 
 @each_cut
@@ -41,7 +41,7 @@ def test_roll_reaches_past_the_contact_of_every_point_of_the_flank(gear_set, mem
 @pytest.mark.parametrize("member", MEMBERS)
 def test_whole_flank_reaches_from_the_lower_limit_to_the_tip(gear_set, member):
     spec = gear_set.member(member)
-    for cut in Cut.of(spec, member):
+    for cut in Cut.of(spec):
         for flank in cut.flanks:
             points = whole_flank(spec, flank)
             grid = blank_grid(spec, 2, 2, 0.0)

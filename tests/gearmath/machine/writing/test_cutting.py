@@ -141,7 +141,7 @@ def left(vertical):
 
     def run(gear_set, member, machine=vertical, **job):
         text = cutting_program(gear_set, member, machine, "PART", CuttingJob(**job))
-        file = mill_member(execute(text, "PART.MPF"), gear_set.member(member), member, machine)
+        file = mill_member(execute(text, "PART.MPF"), gear_set.member(member), machine)
         return np.stack([file.select(flank, 0).deviation for flank in FLANKS])
 
     return run
@@ -234,5 +234,5 @@ def test_progress_hears_of_as_many_passes_as_are_announced(vertical, gear_set_na
     """Two cutters, two stages and three spaces are twelve; a hobbed member is cut in one."""
     one, heard = load_bevel_set(bundled(f"{gear_set_name}.toml")), []
     cutting_program(one, member, vertical, "PART", job, heard.append)
-    assert sum(heard) == pass_count(one.member(member), member, job)
+    assert sum(heard) == pass_count(one.member(member), job)
     assert sum(heard) == {"pinion": 12, "gear": 1 if "hobbed" in gear_set_name else 2}[member]

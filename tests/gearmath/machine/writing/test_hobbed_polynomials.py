@@ -69,9 +69,9 @@ def judged(text, member, machine):
     spec = HOBBED.member(member)
     try:
         path = execute(text, "HOB", Setup.of(machine))
-        runs = runs_of(path, spec, member, machine, None, None, SHARP_EDGE)
-        found = [str(one) for one in faults_of(text, path, runs, spec, member, machine)]
-        return found + [str(one) for one in metal_faults(text, path, runs, spec, member, machine, None).faults]
+        runs = runs_of(path, spec, machine, None, None, SHARP_EDGE)
+        found = [str(one) for one in faults_of(text, path, runs, spec, machine)]
+        return found + [str(one) for one in metal_faults(text, path, runs, spec, machine, None).faults]
     except InputError as error:
         return [str(error)]
 
@@ -91,9 +91,9 @@ def test_the_text_cuts_all_spaces_within_its_tolerance_and_mill_has_nothing_to_s
     stated = float(re.search(r"flank tolerance: ([0-9.]+) um", text)[1]) / 1000
     assert stated == pytest.approx(1e-4)
     path = execute(text, "HOB", Setup.of(machine))
-    left = mill_member(path, HOBBED.member(member), member, machine)
+    left = mill_member(path, HOBBED.member(member), machine)
     assert np.abs(left.deviation).max() <= stated
-    assert 0.7 * stated <= left_at_borders(path, HOBBED.member(member), member, machine).max() <= stated
+    assert 0.7 * stated <= left_at_borders(path, HOBBED.member(member), machine).max() <= stated
     assert judged(text, member, machine) == []
 
 
@@ -186,7 +186,7 @@ def test_feeds_keep_speed_acceleration_and_jerk_of_all_axes():
     assert (used <= 3000.0 / 60 * 1.001).all()
     assert used.max() > 0.97 * 3000.0 / 60
     path = execute(text, "HOB", Setup.of(machine))
-    runs = runs_of(path, HOBBED.member("gear"), "gear", machine, None)
+    runs = runs_of(path, HOBBED.member("gear"), machine, None)
     assert not [*motion_faults(path, runs, HOBBED.member("gear"), machine, Stated.of(text))]
     done = trajectory(path, machine)
     assert done.polynomial_blocks == len(blocks) - 1

@@ -84,12 +84,12 @@ def positions_of(start, blocks, u):
 def judged(text, name, member, machine=MACHINE):
     """What ``mill`` says of a text: sentences, or the one that refuses it."""
     spec = load_bevel_set(bundled(f"{name}.toml")).member(member)
-    space = tooth_space(spec, member, 7)
+    space = tooth_space(spec, 7)
     try:
         path = execute(text, "CUT", Setup.of(machine))
-        runs = runs_of(path, spec, member, machine, None, space, SHARP_EDGE)
-        found = [str(one) for one in faults_of(text, path, runs, spec, member, machine)]
-        left = metal_left(runs, as_cut(spec, space), member, machine, Stated.of(text), space)
+        runs = runs_of(path, spec, machine, None, space, SHARP_EDGE)
+        found = [str(one) for one in faults_of(text, path, runs, spec, machine)]
+        left = metal_left(runs, as_cut(spec, space), machine, Stated.of(text), space)
     except InputError as error:
         return [str(error)]
     return found + [str(one) for one in left.faults]
@@ -421,7 +421,7 @@ def seen(text, name, member, machine):
     spec = load_bevel_set(bundled(f"{name}.toml")).member(member)
     try:
         path = execute(text, "CUT", Setup.of(machine))
-        runs = runs_of(path, spec, member, machine, None, tooth_space(spec, member, 7), SHARP_EDGE)
+        runs = runs_of(path, spec, machine, None, tooth_space(spec, 7), SHARP_EDGE)
         stated = Stated.of(text)
         first = [*motion_faults(path, runs, spec, machine, stated), *beside_the_path(runs, spec, machine, stated)]
     except InputError:

@@ -58,7 +58,7 @@ def tip_in_work(axes, machine, probe):
 
 def probed(gear_set, member, machine=MACHINE, probe=PROBE, stock=None, host=None, parameters=None, **options):
     text = probing_program(gear_set, member, machine, probe, "PROBE", **options)
-    there = ProbeMachine(gear_set.member(member), member, machine, probe, *([stock] if stock else []))
+    there = ProbeMachine(gear_set.member(member), machine, probe, *([stock] if stock else []))
     return run_program(text, "PROBE.MPF", there, host, parameters), there
 
 
@@ -78,7 +78,7 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
     rows = [line.split(",") for line in done.files["PROBE_T"].splitlines()[2:]]
     assert len(touched) == len(rows) == 2 * (45 + spec.teeth - 1 + 5)
     tips, _ = tip_in_work(touched, machine, probe)
-    nominal = {flank: solve_flank(spec, member, flank, blank_grid(spec)) for flank in FLANKS}
+    nominal = {flank: solve_flank(spec, flank, blank_grid(spec)) for flank in FLANKS}
     for tip, (_, _, _, flank, tooth, row, col, *_) in zip(tips, rows, strict=True):
         k = int(row) * 9 + int(col)
         turn = 2 * math.pi * int(tooth) / spec.teeth
@@ -90,7 +90,7 @@ def test_every_touch_is_within_a_micrometre_of_where_it_should_be(gear_set, memb
 def test_tooth_0_is_touched_again_at_the_end_where_it_was_touched_first(gear_set):
     """Both flanks, at the same positions, A of a counting axis too; without pitch there is no second time."""
     for machine in (MACHINE, COUNTING):
-        targets = probe_targets(gear_set.gear, "gear", machine, PROBE)
+        targets = probe_targets(gear_set.gear, machine, PROBE)
         assert (targets.tooth == 36).sum() == 10
         assert (targets.tooth[-10:] == 36).all()
         assert targets.flank[-10:].tolist() == ["concave"] * 5 + ["convex"] * 5
@@ -100,8 +100,8 @@ def test_tooth_0_is_touched_again_at_the_end_where_it_was_touched_first(gear_set
             first &= (targets.row == targets.row[k]) & (targets.col == targets.col[k])
             for positions in (targets.start, targets.touch, targets.end):
                 np.testing.assert_array_equal(positions[k], positions[first][0])
-    assert probe_targets(gear_set.gear, "gear", MACHINE, PROBE, pitch=False).tooth.max() == 0
-    alone = probe_targets(gear_set.gear, "gear", MACHINE, PROBE, topography=())
+    assert probe_targets(gear_set.gear, MACHINE, PROBE, pitch=False).tooth.max() == 0
+    alone = probe_targets(gear_set.gear, MACHINE, PROBE, topography=())
     assert (alone.tooth == 36).sum() == 2
 
 
@@ -123,11 +123,11 @@ def test_repeated_touches_follow_each_other_without_leaving_the_space(gear_set):
 @pytest.mark.parametrize("member", MEMBERS)
 def test_touch_is_square_to_the_flank_and_starts_outside_of_it(gear_set, member):
     spec = gear_set.member(member)
-    targets = probe_targets(spec, member, MACHINE, PROBE)
+    targets = probe_targets(spec, MACHINE, PROBE)
     first, _ = tip_in_work(targets.start, MACHINE, PROBE)
     last, _ = tip_in_work(targets.end, MACHINE, PROBE)
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        nominal = solve_flank(spec, flank, blank_grid(spec))
         here = (targets.flank == flank) & (targets.tooth == 0)
         way = last[here] - first[here]
         along = (way * nominal.normal).sum(axis=1)
@@ -137,9 +137,9 @@ def test_touch_is_square_to_the_flank_and_starts_outside_of_it(gear_set, member)
         assert (gap <= 1.5 + 1e-9).all()
 
 
-def cloud(spec, member):
+def cloud(spec):
     """Points of the space, fine enough that a ball of tip size finds them, and the same of both neighbours' lands."""
-    space = tooth_space(spec, member, 97)
+    space = tooth_space(spec, 97)
     parts = [space.concave.point.reshape(-1, 3), space.convex.point.reshape(-1, 3)]
     low, high = space.ordered
     for share in np.linspace(0, 1, 25)[1:-1]:
@@ -158,7 +158,7 @@ def test_neither_tip_nor_stylus_ever_collides(gear_set, member):
     """All blocks of the topography in steps of 0.25 mm, A turning too, against a cloud of points of the space."""
     spec = gear_set.member(member)
     done, _ = probed(gear_set, member, pitch=False)
-    points, path = cKDTree(cloud(spec, member)), done.path
+    points, path = cKDTree(cloud(spec)), done.path
     nearest_tip, nearest_touch, nearest_stylus = [], [], []
     for k in range(1, len(path.axes)):
         steps = 2 + int(np.linalg.norm(path.axes[k, :3] - path.axes[k - 1, :3]) / 0.25)
@@ -176,7 +176,7 @@ def test_neither_tip_nor_stylus_ever_collides(gear_set, member):
     assert min(nearest_stylus) > PROBE.stylus_radius + 0.3
     # the check of the command says the same
     text = probing_program(gear_set, member, MACHINE, PROBE, "PROBE", pitch=False)
-    near = {(one.probe, one.work): one.distance for one in approaches(text, "P", spec, member, MACHINE, PROBE)}
+    near = {(one.probe, one.work): one.distance for one in approaches(text, "P", spec, MACHINE, PROBE)}
     assert near["tip", "teeth"] > 0.2
     assert near["stylus", "teeth"] > 0.3
 
@@ -187,7 +187,7 @@ def test_sideways_motion_is_above_the_whole_member(gear_set, member):
     spec = gear_set.member(member)
     done, _ = probed(gear_set, member)
     path = done.path
-    blank = solve_flank(spec, member, "concave", blank_grid(spec, 2, 2, 0.02)).point
+    blank = solve_flank(spec, "concave", blank_grid(spec, 2, 2, 0.02)).point
     reach = np.hypot(blank[:, 0], blank[:, 1]) * 1.02
     for k in range(1, len(path.axes)):
         moved = np.abs(path.axes[k] - path.axes[k - 1])
@@ -220,7 +220,7 @@ def test_host_gets_every_point_once_and_in_order(gear_set):
 
 def test_program_waits_for_a_host_that_does_not_answer(gear_set):
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=())
-    there = ProbeMachine(gear_set.member("pinion"), "pinion", MACHINE, PROBE)
+    there = ProbeMachine(gear_set.member("pinion"), MACHINE, PROBE)
     for host in (lambda parameters: {}, lambda parameters: {103: parameters[101] - 1}):
         with pytest.raises(InputError, match=r"the program is not at its end after 5000 steps"):
             run_program(text, "P", there, host, {104: 1}, step_limit=5000)
@@ -232,7 +232,7 @@ def test_missing_metal_and_metal_in_the_way_stop_the_program_after_a_retract(gea
         (-1.0, NOTHING_TOUCHED, "touched nothing"),
         (5.0, TOUCHED_TOO_EARLY, "touched something on the way in"),
     ):
-        there = ProbeMachine(gear_set.member("gear"), "gear", MACHINE, PROBE, lambda flank, tooth, place, a=amount: a)
+        there = ProbeMachine(gear_set.member("gear"), MACHINE, PROBE, lambda flank, tooth, place, a=amount: a)
         text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", topography=())
         there.body.point = there.body.point + amount * there.body.normal
         done = run_program(text, "P", there)

@@ -74,7 +74,7 @@ def pitch_program(gear_set):
 )
 def test_loop_makes_the_very_touches_of_its_points_one_by_one(gear_set, machine, name, options):
     """Every touch of the list, each rounded to the increments by itself: nothing adds up from tooth to tooth."""
-    targets = probe_targets(gear_set.member(name), name, machine, PROBE, **options)
+    targets = probe_targets(gear_set.member(name), machine, PROBE, **options)
     made = []
 
     def probe(start, end):
@@ -282,11 +282,11 @@ BACKLASH = 30.0
 def pitch_scatter(gear_set, tmp_path, machine, errors):
     """Largest difference [um] between the deviations of one flank's reference points over all teeth."""
     text = probing_program(gear_set, "gear", machine, PROBE, "PROBE", topography=(), around=(0, 12, 24))
-    there = ErringProbe(ProbeMachine(gear_set.gear, "gear", machine, PROBE), errors)
+    there = ErringProbe(ProbeMachine(gear_set.gear, machine, PROBE), errors)
     done = run(text, there, moved=there.follow)
     assert done.alarm is None
     (tmp_path / "raw.csv").write_text(done.files["PROBE_T"])
-    seen = measured_member(read_touch_csv(tmp_path / "raw.csv"), gear_set.gear, "gear", machine, PROBE)
+    seen = measured_member(read_touch_csv(tmp_path / "raw.csv"), gear_set.gear, machine, PROBE)
     middle = (seen.row == 2) & (seen.col == 4)
     return max(np.ptp(seen.deviation[middle & (seen.flank == flank)]) for flank in ("concave", "convex")) * 1000
 

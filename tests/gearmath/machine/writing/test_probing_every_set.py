@@ -36,25 +36,25 @@ def test_program_touches_gives_back_nominal_and_collides_with_nothing(gear_set, 
     """Touches within 1 um, nominal points through the evaluation within 0.01 um; tip, stylus and spindle stay clear."""
     bevel_set = load_bevel_set(bundled(f"{gear_set}.toml"))
     member = bevel_set.member(name)
-    there = ProbeMachine(member, name, MACHINE, PROBE)
+    there = ProbeMachine(member, MACHINE, PROBE)
     text = probing_program(bevel_set, name, MACHINE, PROBE, "PROBE")
     done = run_program(text, "PROBE.MPF", there)
     assert done.alarm is None
     touches = tmp_path / "touches.csv"
     touches.write_text(done.files["PROBE_T"])
-    measured = measured_member(read_touch_csv(touches, None), member, name, MACHINE, PROBE)
+    measured = measured_member(read_touch_csv(touches, None), member, MACHINE, PROBE)
     assert len(measured) >= 2 * (45 + member.teeth - 1)
     assert np.abs(measured.deviation).max() <= 1e-5  # mm
     targets = []
     for flank in FLANKS:
-        nominal = solve_flank(member, name, flank, blank_grid(member))
+        nominal = solve_flank(member, flank, blank_grid(member))
         for tooth in range(member.teeth):
             angle = 2 * np.pi * tooth / member.teeth
             c, s = np.cos(angle), np.sin(angle)
             about = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
             targets.append((nominal.point + PROBE.tip_radius * nominal.normal) @ about.T)
     assert cKDTree(np.concatenate(targets)).query(np.array(there.touches))[0].max() <= 1e-3
-    near = {(one.probe, one.work): one.distance for one in approaches(text, "P", member, name, MACHINE, PROBE)}
+    near = {(one.probe, one.work): one.distance for one in approaches(text, "P", member, MACHINE, PROBE)}
     assert {probe for probe, _ in near} == {"tip", "stylus", "spindle"}
     assert {work for _, work in near} == {"teeth", "hub", "shank", "fixture"}
     assert min(near.values()) > 0.0

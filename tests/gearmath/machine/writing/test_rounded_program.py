@@ -50,7 +50,7 @@ def test_rounding_takes_from_a_third_to_all_of_what_the_header_states(gear_set, 
     assert least <= stated <= most
     text = cutting_program(gear_set, "gear", fine, "CUT", CuttingJob((0,), 1e-4))
     left = [
-        mill_member(execute(program, "CUT", Setup.of(fine)), spec, "gear", fine).deviation * 1000
+        mill_member(execute(program, "CUT", Setup.of(fine)), spec, fine).deviation * 1000
         for program in (text, rounded(text, 1.0 / increments))
     ]
     measured = float(np.abs(left[1] - left[0]).max())  # point by point, so that what straight blocks leave is no part

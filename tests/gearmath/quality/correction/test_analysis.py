@@ -24,7 +24,7 @@ from gearmath.specs.toml import bundled
 
 @pytest.fixture(scope="module")
 def target(gear_set):
-    nominal = solve_flank(gear_set.pinion, "pinion", "concave", blank_grid(gear_set.pinion))
+    nominal = solve_flank(gear_set.pinion, "concave", blank_grid(gear_set.pinion))
     return replace(target_of(gear_set.pinion, "concave", nominal), root=None)
 
 
@@ -74,7 +74,7 @@ def test_settings_without_effect_are_named(target):
     """No tilt: the swivel turns nothing. Formate: no roll, no ratio."""
     assert analyse([target], MACHINE_SETTINGS).unseen == ("cutter_swivel",)
     formate = load_bevel_set(bundled("crown_gear_formate_14x39.toml")).gear
-    nominal = solve_flank(formate, "gear", "convex", blank_grid(formate))
+    nominal = solve_flank(formate, "convex", blank_grid(formate))
     assert "ratio_of_roll" in analyse([target_of(formate, "convex", nominal)], FREE).unseen
     assert "ratio_of_roll" not in free_settings(formate)
 
@@ -107,7 +107,7 @@ def test_few_settings_are_as_good_as_any_of_their_number(target):
 
 def test_flanks_of_a_completing_cut_are_judged_together(gear_set):
     grid = blank_grid(gear_set.gear)
-    targets = [target_of(gear_set.gear, f, solve_flank(gear_set.gear, "gear", f, grid)) for f in FLANKS]
+    targets = [target_of(gear_set.gear, f, solve_flank(gear_set.gear, f, grid)) for f in FLANKS]
     both, each = analyse(targets), [analyse([target]) for target in targets]
     assert both.jacobian.shape == (90, 7)
     np.testing.assert_array_equal(both.jacobian, np.concatenate([one.jacobian for one in each]))
@@ -138,7 +138,7 @@ def test_large_deviations_are_damped_and_stay_within_bounds(target):
 
 
 def test_root_line_is_held_and_said_to_hold_back(gear_set):
-    nominal = solve_flank(gear_set.pinion, "pinion", "concave", blank_grid(gear_set.pinion))
+    nominal = solve_flank(gear_set.pinion, "concave", blank_grid(gear_set.pinion))
     target = target_of(gear_set.pinion, "concave", nominal)
     deeper = off(target, sliding_base=-0.12, machine_root_angle=5e-4)
     names = ("radial_distance", "cradle_angle", "sliding_base")
@@ -165,7 +165,7 @@ def test_root_line_is_where_the_general_solver_meets_the_tip_of_the_blade(set_na
     member = load_bevel_set(bundled(f"{set_name}.toml")).member(name)
     delta = np.radians(member.blank.pitch_angle)
     for flank in FLANKS:
-        target = target_of(member, flank, solve_flank(member, name, flank, blank_grid(member)))
+        target = target_of(member, flank, solve_flank(member, flank, blank_grid(member)))
         contact, depth, _ = target.root.depth(target.vector)
         along = target.root.distances
         place = along * np.cos(delta) + depth * np.sin(delta), along * np.sin(delta) - depth * np.cos(delta)

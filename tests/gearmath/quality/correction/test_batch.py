@@ -23,7 +23,7 @@ def case(request):
     """Both flanks of a gear, its free settings, and five measurements: a smooth error of 20 um with noise."""
     gear = load_bevel_set(bundled(f"{request.param}.toml")).gear
     grid = blank_grid(gear)
-    targets = [replace(target_of(gear, f, solve_flank(gear, "gear", f, grid)), root=None) for f in FLANKS]
+    targets = [replace(target_of(gear, f, solve_flank(gear, f, grid)), root=None) for f in FLANKS]
     row, col = (np.tile(index.ravel(), 2) for index in np.indices((5, 9)))
     smooth = 5e-3 * (row - 2) - 2e-3 * (col - 4) + 0.3e-3 * (row - 2) * (col - 4)
     random = np.random.default_rng(0)

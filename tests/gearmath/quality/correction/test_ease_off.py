@@ -36,7 +36,7 @@ def measured(header, member, name, change):
     """The file of a member whose machine was off by ``change`` (12,), on the grid of its flanks."""
     files = []
     for flank in FLANKS:
-        nominal = solve_flank(member, name, flank, blank_grid(member))
+        nominal = solve_flank(member, flank, blank_grid(member))
         target = target_of(member, flank, nominal)
         deviation, _ = predicted(target, target.settings + change)
         row, col = (index.ravel() for index in np.indices((5, 9)))
@@ -47,7 +47,7 @@ def measured(header, member, name, change):
 
 @pytest.fixture
 def header():
-    return lambda member, name: flank_header(member, name, (5, 9), 0.1)
+    return lambda member, name: flank_header(member, (5, 9), 0.1)
 
 
 def azimuth(member, flank, change, axial, radial, start):
@@ -75,12 +75,12 @@ def test_deviation_at_the_conjugate_place_is_what_closes_the_gap_of_the_turning_
     """
     pair, flank, other = pair_of(set_name), "convex", "concave"
     sigma, ratio = np.radians(pair.shaft_angle), pair.pinion.teeth / pair.gear.teeth
-    gear = solve_flank(pair.gear, "gear", flank, blank_grid(pair.gear))
+    gear = solve_flank(pair.gear, flank, blank_grid(pair.gear))
     target = target_of(pair.gear, flank, gear)
     deviation, _ = predicted(target, target.settings + errors())
     k = 22  # the middle
     axial, radial = conjugate_places(pair, pair.gear, pair.pinion, gear.point[[k]], gear.normal[[k]])
-    start = solve_flank(pair.pinion, "pinion", other, blank_grid(pair.pinion)).contact[22]
+    start = solve_flank(pair.pinion, other, blank_grid(pair.pinion)).contact[22]
     how = cut_generation_of(pair.pinion, other)
     section = blade_sections(pair.pinion.flank(other), how.side)["main"]
     (p,) = solve_section(how, section, axial, radial, start[None]).point
@@ -118,9 +118,9 @@ def test_gear_errors_are_corrected_on_the_pinion_alone(header, set_name):
     pair = pair_of(set_name)
     gear, pinion = measured(header, pair.gear, "gear", errors()), measured(header, pair.pinion, "pinion", 0 * errors())
     moved = moved_to_mate(pair, "gear", gear, pinion)
-    correction = correct(pair.pinion, "pinion", pinion, added=moved)
+    correction = correct(pair.pinion, pinion, added=moved)
     for flank in FLANKS:
-        target = target_of(pair.pinion, flank, solve_flank(pair.pinion, "pinion", flank, blank_grid(pair.pinion)))
+        target = target_of(pair.pinion, flank, solve_flank(pair.pinion, flank, blank_grid(pair.pinion)))
         cut, _ = predicted(target, correction.settings[flank])
         asked = moved[flank]
         assert np.abs(asked).max() > 5e-3
@@ -132,7 +132,7 @@ def test_smooth_errors_are_interpolated_to_a_tenth_of_a_micrometre(header):
     pair = pair_of("nasa_tp3096_12x36")
     pinion = measured(header, pair.pinion, "pinion", 0 * errors())
     moved = moved_to_mate(pair, "gear", measured(header, pair.gear, "gear", errors()), pinion)["concave"]
-    nominal = solve_flank(pair.gear, "gear", "convex", blank_grid(pair.gear, 9, 17))
+    nominal = solve_flank(pair.gear, "convex", blank_grid(pair.gear, 9, 17))
     axial, radial = conjugate_places(pair, pair.gear, pair.pinion, nominal.point, nominal.normal)
     target = target_of(pair.gear, "convex", nominal)
     deviation, _ = predicted(target, target.settings + errors())
@@ -152,7 +152,7 @@ def test_file_of_the_wrong_member_and_a_pair_that_does_not_mesh_are_refused(head
     pinion = measured(header, pair.pinion, "pinion", 0 * errors())
     with pytest.raises(InputError, match="member = 'pinion' in the measured file: must be 'gear'"):
         moved_to_mate(pair, "gear", pinion, pinion)
-    gear = solve_flank(pair.gear, "gear", "convex", blank_grid(pair.gear))
+    gear = solve_flank(pair.gear, "convex", blank_grid(pair.gear))
     with pytest.raises(ComputationError, match=r"point \d+ does not meet the mate"):
         conjugate_places(pair, pair.gear, pair.pinion, gear.point * [1, 1, 3], gear.normal)
 
@@ -160,7 +160,7 @@ def test_file_of_the_wrong_member_and_a_pair_that_does_not_mesh_are_refused(head
 def test_conjugate_places_do_not_depend_on_where_the_apexes_are_counted():
     """One pair, the apex of each member put elsewhere on its axis: the places move along with it."""
     pair = pair_of("nasa_tp3096_12x36")
-    flank = solve_flank(pair.gear, "gear", "convex", blank_grid(pair.gear))
+    flank = solve_flank(pair.gear, "convex", blank_grid(pair.gear))
     axial, radial = conjugate_places(pair, pair.gear, pair.pinion, flank.point, flank.normal)
     gear, pinion = (
         member.model_copy(

@@ -40,7 +40,7 @@ def loop(gear_set, mill, quiet_shop, tmp_path_factory):
             for k in range(rounds + 1):
                 current = load_bevel_set(source)
                 files.append(mill(current, member, range(current.member(member).teeth), quiet_shop))
-                correction = correct(current.member(member), member, files[-1])
+                correction = correct(current.member(member), files[-1])
                 target = folder / f"{member}_{k}.toml"
                 save_corrected(source, target, member, correction.settings, correction.index)
                 source = target
@@ -90,7 +90,7 @@ def test_second_correction_keeps_what_the_first_has_reached(gear_set, loop, memb
 def test_perfect_member_stays_perfect(gear_set, mill, tmp_path, member):
     """What straight blocks leave, 0.1 µm, is all that there is to correct; the next cut is no worse for it."""
     good = mill(gear_set, member)
-    correction = correct(gear_set.member(member), member, good)
+    correction = correct(gear_set.member(member), good)
     save_corrected(SET, tmp_path / "next.toml", member, correction.settings, correction.index)
     assert profile(mill(load_bevel_set(tmp_path / "next.toml"), member), member) <= 2e-4
     assert correction.index is None  # one space has no pitch
@@ -100,7 +100,7 @@ def test_perfect_member_stays_perfect(gear_set, mill, tmp_path, member):
 def test_measurement_without_any_deviation_changes_nothing(gear_set, mill, member):
     file = mill(gear_set, member)
     point = file.point - file.deviation[:, None] * file.normal
-    correction = correct(gear_set.member(member), member, replace(file, point=point, deviation=0 * file.deviation))
+    correction = correct(gear_set.member(member), replace(file, point=point, deviation=0 * file.deviation))
     for flank in FLANKS:
         settings = gear_set.member(member).flank(flank).vector
         np.testing.assert_allclose(correction.settings[flank], settings, rtol=0, atol=1e-9)
@@ -110,13 +110,13 @@ def test_measurement_without_any_deviation_changes_nothing(gear_set, mill, membe
 def test_noise_of_the_probe_stays_about_as_small_as_it_is(gear_set, mill, shop, quiet_shop, tmp_path):
     """45 points of 0.5 µm: the corrected flank is off by no more than twice that, noise taken away."""
     noisy = mill(gear_set, "pinion", (0,), shop)
-    correction = correct(gear_set.pinion, "pinion", noisy)
+    correction = correct(gear_set.pinion, noisy)
     save_corrected(SET, tmp_path / "next.toml", "pinion", correction.settings)
     assert profile(mill(load_bevel_set(tmp_path / "next.toml"), "pinion", (0,), quiet_shop), "pinion") <= 1e-3
 
 
 def test_completing_cut_keeps_one_machine_setting_for_both_flanks(gear_set, mill, quiet_shop):
-    correction = correct(gear_set.gear, "gear", mill(gear_set, "gear", (0,), quiet_shop))
+    correction = correct(gear_set.gear, mill(gear_set, "gear", (0,), quiet_shop))
     assert list(correction.identified) == [FLANKS]
     changes = [
         {name: new - old for f, name, old, new in setting_changes(gear_set.gear, correction) if f == flank}
@@ -127,19 +127,19 @@ def test_completing_cut_keeps_one_machine_setting_for_both_flanks(gear_set, mill
 
 
 def test_fixed_settings_are_corrected_flank_by_flank(gear_set, measured):
-    correction = correct(gear_set.pinion, "pinion", measured)
+    correction = correct(gear_set.pinion, measured)
     assert list(correction.identified) == [("concave",), ("convex",)]
     other = measured.select("concave")
     alone = replace(measured, deviation=np.where(measured.flank == "convex", measured.deviation, 0.0))
     alone = replace(alone, point=alone.point + (alone.deviation - measured.deviation)[:, None] * alone.normal)
-    changed = correct(gear_set.pinion, "pinion", alone)
+    changed = correct(gear_set.pinion, alone)
     np.testing.assert_array_equal(changed.settings["convex"], correction.settings["convex"])
     assert np.abs(other.deviation).max() > 0.005
 
 
 def test_expected_remainder_is_what_the_next_cut_shows(gear_set, loop):
     first, second, _ = loop("gear", 2)
-    correction = correct(gear_set.gear, "gear", first)
+    correction = correct(gear_set.gear, first)
     for flank in FLANKS:
         left = np.abs(second.select(flank, 0).deviation).max()
         assert correction.expected[flank] == pytest.approx(left, abs=3e-4)  # straight blocks of both cuts
@@ -153,9 +153,9 @@ def test_grid_may_stand_on_any_tooth_and_in_any_order(gear_set, mill, quiet_shop
         name: getattr(file, name)[mixed]
         for name in ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")
     }
-    correction = correct(gear_set.pinion, "pinion", replace(file, **arrays))
+    correction = correct(gear_set.pinion, replace(file, **arrays))
     assert max(correction.expected.values()) < 3e-4
-    target = flank_target(gear_set.pinion, "pinion", "concave", file)
+    target = flank_target(gear_set.pinion, "concave", file)
     np.testing.assert_array_equal(target.deviation, file.select("concave", 5).deviation)
 
 
@@ -185,14 +185,14 @@ def header(file: FlankFile, **values: str) -> FlankFile:
 )
 def test_file_that_is_not_of_this_member_is_refused(gear_set, measured, change, sentence):
     with pytest.raises(InputError, match=sentence):
-        correct(gear_set.pinion, "pinion", change(measured))
+        correct(gear_set.pinion, change(measured))
 
 
 def test_nominal_file_of_both_flanks_is_refused(gear_set):
     grid = blank_grid(gear_set.pinion)
-    nominal = join([nominal_flank(gear_set.pinion, "pinion", flank, grid) for flank in FLANKS])
+    nominal = join([nominal_flank(gear_set.pinion, flank, grid) for flank in FLANKS])
     with pytest.raises(InputError, match="nominal file"):
-        correct(gear_set.pinion, "pinion", nominal)
+        correct(gear_set.pinion, nominal)
 
 
 def without(file: FlankFile, dropped: np.ndarray) -> FlankFile:
@@ -209,14 +209,14 @@ def without(file: FlankFile, dropped: np.ndarray) -> FlankFile:
 def test_points_that_are_missing_empty_or_excluded_are_left_out_and_said(gear_set, measured):
     """A column in the middle is gone: the settings that the other points give correct the flank all the same."""
     gone = (measured.flank == "concave") & (measured.col == 4)
-    whole, fewer = (correct(gear_set.pinion, "pinion", f) for f in (measured, without(measured, gone)))
+    whole, fewer = (correct(gear_set.pinion, f) for f in (measured, without(measured, gone)))
     assert whole.left_out == {"concave": 0, "convex": 0}
     assert fewer.left_out == {"concave": 5, "convex": 0}
     assert max(fewer.expected.values()) < 3e-4
     empty = replace(measured, deviation=np.where(gone, np.nan, measured.deviation))
     marked = replace(measured, deviation=np.where(gone, 0.3, measured.deviation))
     marked = replace(marked, point=measured.point + (marked.deviation - measured.deviation)[:, None] * measured.normal)
-    for other in (correct(gear_set.pinion, "pinion", empty), correct(gear_set.pinion, "pinion", marked, excluded=gone)):
+    for other in (correct(gear_set.pinion, empty), correct(gear_set.pinion, marked, excluded=gone)):
         np.testing.assert_allclose(other.settings["concave"], fewer.settings["concave"], rtol=0, atol=1e-12)
         assert other.left_out == fewer.left_out
 
@@ -227,7 +227,7 @@ def test_too_few_points_to_tell_the_settings_apart_are_refused(gear_set, measure
     with pytest.raises(
         InputError, match=r"^pinion concave: \d+ points are left of 45: too few to tell what 7 settings"
     ):
-        correct(gear_set.pinion, "pinion", few)
+        correct(gear_set.pinion, few)
 
 
 def test_measurement_that_no_setting_explains_is_not_made_worse(gear_set, measured):
@@ -237,7 +237,7 @@ def test_measurement_that_no_setting_explains_is_not_made_worse(gear_set, measur
         measured, deviation=sign, point=measured.point + (sign - measured.deviation)[:, None] * measured.normal
     )
     try:
-        found = correct(gear_set.pinion, "pinion", board).identified
+        found = correct(gear_set.pinion, board).identified
     except ComputationError:
         return
     for result in found.values():

@@ -37,7 +37,7 @@ def measured(name, errors, rotation=0.0, sigma=0.0, seed=0, extra=None, gear_set
     member, random, files = gear_set.member(name), np.random.default_rng(seed), []
     for flank in FLANKS:
         grid = blank_grid(member)
-        target = target_of(member, flank, solve_flank(member, name, flank, grid))
+        target = target_of(member, flank, solve_flank(member, flank, grid))
         vector = target.vector
         for key, value in errors.get(flank, {}).items():
             vector[NAMES.index(key)] += value
@@ -51,7 +51,7 @@ def measured(name, errors, rotation=0.0, sigma=0.0, seed=0, extra=None, gear_set
         at = target.nominal
         point = at.point + deviation[:, None] * at.normal
         files.append(
-            flank_file(flank_header(member, name, grid.shape), name, flank, 0, row, col, point, at.normal, deviation)
+            flank_file(flank_header(member, grid.shape), name, flank, 0, row, col, point, at.normal, deviation)
         )
     file = join(files)
     return replace(file, uncertainty=np.full(len(file), sigma or np.nan))
@@ -60,8 +60,8 @@ def measured(name, errors, rotation=0.0, sigma=0.0, seed=0, extra=None, gear_set
 def corrected(name, file, **options):
     """Changes by flank and setting of ``few``, as the command corrects, and the evaluation and the correction."""
     member = NASA.member(name)
-    judged = evaluate_member(file, member, name)
-    found = correct(member, name, judged.file, few=True, **options)
+    judged = evaluate_member(file, member)
+    found = correct(member, judged.file, few=True, **options)
     changes = {flank: {} for flank in FLANKS}
     for flank, key, old, new in setting_changes(member, found):
         changes[flank][key] = new - old
@@ -101,7 +101,7 @@ def test_radial_error_under_noise_is_corrected_within_three_of_its_uncertainties
     known = independent(np.full(len(file), SIGMA)).carried(judged_by_measured(file, member, judged))
     u = {
         (one.figure.flank, one.figure.name): one.uncertainty
-        for one in uncertain_settings(member, name, judged.file, found, known)[0]
+        for one in uncertain_settings(member, judged.file, found, known)[0]
     }
     for flank in FLANKS:
         assert list(changes[flank]) == (["radial_distance"] if flank in flanks else [])
@@ -127,8 +127,8 @@ def test_thickness_is_no_rotation():
     turn = 1e-4
     errors = {"concave": {"work_rotation_offset": turn}, "convex": {"work_rotation_offset": -turn}}
     file = measured("pinion", errors, 30 * ARCSEC)
-    judged = evaluate_member(file, NASA.pinion, "pinion").file
-    found = correct(NASA.pinion, "pinion", judged, ("work_rotation_offset",), few=True)
+    judged = evaluate_member(file, NASA.pinion).file
+    found = correct(NASA.pinion, judged, ("work_rotation_offset",), few=True)
     row = SETTINGS.index("work_rotation_offset")
     moved = [found.settings[flank][row] - NASA.pinion.flank(flank).vector[row] for flank in FLANKS]
     assert moved[0] - moved[1] == pytest.approx(-2 * turn, rel=1e-3)
@@ -148,7 +148,7 @@ def test_no_result_is_below_its_limit(name, size):
     errors = dict.fromkeys(FLANKS, errors)
     file = measured(name, errors, extra=lambda _: ripple(size))
     for few in (True, False):
-        found = correct(NASA.member(name), name, file, few=few)
+        found = correct(NASA.member(name), file, few=few)
         for group, result in found.identified.items():
             assert result.converged
             assert found.reachable[group] <= result.rms_after
@@ -163,13 +163,13 @@ def test_flank_that_a_common_correction_makes_worse_is_refused_with_figures():
         match=r"^gear: the correction by .* makes the convex flank worse \(RMS concave [\d.]+ to [\d.]+ um, "
         r"convex 0\.\d+ to [\d.]+ um\); nothing is written",
     ):
-        correct(NASA.gear, "gear", file, ("machine_root_angle", "ratio_of_roll"))
+        correct(NASA.gear, file, ("machine_root_angle", "ratio_of_roll"))
 
 
 def test_where_the_few_meet_a_bound_the_next_best_few_are_taken_if_they_leave_less():
     """A ratio of roll off by more than its bound of 0.02: fewer than all seven settings, none of them at a limit."""
     file = measured("pinion", {key: {"ratio_of_roll": 0.021} for key in FLANKS})
-    found = correct(NASA.pinion, "pinion", file, few=True)
+    found = correct(NASA.pinion, file, few=True)
     for group, one in found.identified.items():
         names = [variable.name for variable in one.variables]
         assert "ratio_of_roll" not in names
@@ -187,7 +187,7 @@ def test_root_that_the_tip_of_the_cutter_leaves_keeps_its_limit_where_settings_r
     member = SPIRAL.pinion
     y, x = (index.ravel() * 2.0 / (n - 1) - 1 for index, n in zip(np.indices((5, 9)), (5, 9), strict=True))
     file = measured("pinion", {}, extra=lambda _: 3e-3 * x * y + 2e-3 * y, gear_set=SPIRAL)
-    found = correct(member, "pinion", evaluate_member(file, member, "pinion").file, few=True)
+    found = correct(member, evaluate_member(file, member).file, few=True)
     for flank in FLANKS:
         how, section = cut_generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
         new = replace(how, settings=found.settings[flank])

@@ -29,9 +29,9 @@ def pinion_with_one_tooth_indexed(gear_set, arcs, noise=0.0, others=True, radial
     The other teeth have their reference points where they belong. All flanks are off by ``radial`` [mm] besides.
     """
     member, files, random = gear_set.pinion, [], np.random.default_rng(0)
-    header = flank_header(member, "pinion", (5, 9))
+    header = flank_header(member, (5, 9))
     for flank in FLANKS:
-        at = solve_flank(member, "pinion", flank, blank_grid(member))
+        at = solve_flank(member, flank, blank_grid(member))
         target = target_of(member, flank, at)
         for tooth in range(12 if others else 1):
             settings, keep = target.settings.copy(), slice(None) if tooth == 0 else slice(22, 23)
@@ -52,7 +52,7 @@ def pinion_with_one_tooth_indexed(gear_set, arcs, noise=0.0, others=True, radial
 def test_indexing_error_of_the_measured_tooth_changes_no_setting(gear_set, arc, flanks):
     """20 to 100 um, of both flanks or of one, where nothing of the rotation of the work is left open."""
     arcs = {flank: arc * UM if flank in flanks else 0.0 for flank in FLANKS}
-    found = correct(gear_set.pinion, "pinion", pinion_with_one_tooth_indexed(gear_set, arcs), few=True)
+    found = correct(gear_set.pinion, pinion_with_one_tooth_indexed(gear_set, arcs), few=True)
     for flank in FLANKS:
         np.testing.assert_array_equal(found.settings[flank], gear_set.pinion.flank(flank).vector)
         assert found.expected[flank] < 0.02 * UM
@@ -68,14 +68,14 @@ def test_hobbed_member_is_not_told_to_leave_it_to_an_index_that_it_has_not(gear_
     file = pinion_with_one_tooth_indexed(gear_set, dict.fromkeys(FLANKS, 20 * UM))
     hobbed = gear_set.pinion.model_copy(update={"blade_groups": 13})
     for member, words in ((gear_set.pinion, "it is left to the index"), (hobbed, "face hobbing cannot turn one tooth")):
-        _, remarks = teeth_as_indexed_on_average(member, "pinion", file)
+        _, remarks = teeth_as_indexed_on_average(member, file)
         assert [words in line for line in remarks] == [True, True]
 
 
 def test_error_of_a_setting_is_found_under_an_indexing_error_and_noise(gear_set):
     arcs = {"concave": 60 * UM, "convex": 30 * UM}
     file = pinion_with_one_tooth_indexed(gear_set, arcs, noise=0.5 * UM, radial=0.05)
-    found = correct(gear_set.pinion, "pinion", file, few=True, noise=0.5 * UM)
+    found = correct(gear_set.pinion, file, few=True, noise=0.5 * UM)
     for flank in FLANKS:
         change = found.settings[flank] - gear_set.pinion.flank(flank).vector
         assert list(np.flatnonzero(change)) == [RADIAL]
@@ -84,7 +84,7 @@ def test_error_of_a_setting_is_found_under_an_indexing_error_and_noise(gear_set)
 
 def test_one_tooth_alone_says_that_its_index_is_not_known(gear_set):
     file = pinion_with_one_tooth_indexed(gear_set, dict.fromkeys(FLANKS, 0.0), others=False)
-    found = correct(gear_set.pinion, "pinion", file, few=True)
+    found = correct(gear_set.pinion, file, few=True)
     (line,) = found.remarks
     assert line.startswith("concave and convex flank: fewer than 4 teeth")
     assert "the settings are changed for it; measure more teeth" in line
@@ -96,7 +96,7 @@ def test_tooth_far_off_the_others_moves_no_setting(gear_set, sign):
     file = pinion_with_one_tooth_indexed(gear_set, dict.fromkeys(FLANKS, 0.0))
     off = 80 * UM * (file.tooth == 4) * np.where(file.flank == "convex", sign, 1)
     file = replace(file, deviation=file.deviation + off, point=file.point + off[:, None] * file.normal)
-    found = correct(gear_set.pinion, "pinion", file, few=True)
+    found = correct(gear_set.pinion, file, few=True)
     for flank in FLANKS:
         np.testing.assert_array_equal(found.settings[flank], gear_set.pinion.flank(flank).vector)
         assert f"{flank} flank: without tooth 4, far off the others: the settings are corrected" in " ".join(
@@ -109,7 +109,7 @@ def test_tooth_whose_form_is_unlike_the_others_is_not_the_one_that_is_corrected(
     """Four teeth in full, one of them with 20 um of spiral angle; of two teeth none is known to be the odd one."""
     files = []
     for tooth in range(4):
-        one = nominal_flank(gear_set.pinion, "pinion", "concave", blank_grid(gear_set.pinion), tooth=tooth)
+        one = nominal_flank(gear_set.pinion, "concave", blank_grid(gear_set.pinion), tooth=tooth)
         files.append(replace(one, deviation=20 * UM * (one.col / 4 - 1) * (tooth == odd) + 5 * UM * tooth))
     right = min(set(range(4)) - {odd})
     assert representative_tooth(join(files), "concave") == right

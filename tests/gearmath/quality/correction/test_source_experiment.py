@@ -40,13 +40,13 @@ def cumulative_pitch(file, teeth, flank):
     return float(np.ptp(arc))
 
 
-def not_correctable(member, name, file):
+def not_correctable(member, file):
     """RMS that the best small change of all ten machine settings leaves, and RMS before; flank by flank if they may."""
     squares, count = np.zeros(2), 0
     for group in [FLANKS] if member.cutting == "completing" else [(flank,) for flank in FLANKS]:
         gradient, deviation = [], []
         for flank in group:
-            target = flank_target(member, name, flank, file)
+            target = flank_target(member, flank, file)
             gradient.append(predicted(target, target.settings)[1][:, :10])
             deviation.append(target.deviation)
         rows, values = np.concatenate(gradient), np.concatenate(deviation)
@@ -62,7 +62,7 @@ def cut(gear_set, name, vertical):
     member = gear_set.member(name)
     text = cutting_program(gear_set, name, vertical, "EXPERIMENT", CuttingJob(range(member.teeth)))
     around = teeth_around(member.teeth)
-    return metal(execute(text, "EXPERIMENT.MPF"), member, name, vertical, QUIET, around=around)
+    return metal(execute(text, "EXPERIMENT.MPF"), member, vertical, QUIET, around=around)
 
 
 @pytest.fixture(scope="module", params=MEMBERS)
@@ -76,9 +76,9 @@ def profile(file):
     return np.concatenate([file.select(flank, 0).deviation for flank in FLANKS])
 
 
-def standing_free(member, name, file):
+def standing_free(member, file):
     """The profile but for a rotation of the work, by least squares: the correction leaves open how it stood."""
-    targets = [flank_target(member, name, flank, file, tooth=0) for flank in FLANKS]
+    targets = [flank_target(member, flank, file, tooth=0) for flank in FLANKS]
     deviation = np.concatenate([target.deviation for target in targets])
     column = np.concatenate([predicted(target, target.settings)[1][:, 9] for target in targets])
     return deviation - column * (column @ deviation) / (column @ column)
@@ -94,10 +94,10 @@ def test_committed_file_gives_the_initial_figures_of_the_source_text(first_cut):
     name, first = first_cut
     member, deviation = SET.member(name), profile(first)
     assert deviation[np.argmax(np.abs(deviation))] == pytest.approx(PROFILE[name], abs=1e-4)
-    seen = measure_member(first, member, name, QUIET)
+    seen = measure_member(first, member, QUIET)
     assert max(cumulative_pitch(seen, member.teeth, flank) for flank in FLANKS) == pytest.approx(PITCH, abs=1e-4)
     assert max(cumulative_pitch(first, member.teeth, flank) for flank in FLANKS) < 0.01
-    left, before = not_correctable(member, name, first)
+    left, before = not_correctable(member, first)
     assert left >= 0.2 * before
 
 
@@ -126,29 +126,29 @@ def test_loop_goes_down_to_what_settings_cannot_express_and_the_noise(first_cut,
     """
     name, state = first_cut
     member, source = SET.member(name), bundled("spiral_7x43.toml")
-    floor = correct(member, name, state)
+    floor = correct(member, state)
     residual = np.concatenate([found.residual for found in floor.identified.values()])
     states = []
     for k in (1, 2):
         gear_set = load_bevel_set(source)
-        seen = measure_member(state, gear_set.member(name), name, SHOP, run=k)
-        judged = evaluate_member(seen, member, name, rotated=False)  # the metal is compared as it stands on the machine
+        seen = measure_member(state, gear_set.member(name), SHOP, run=k)
+        judged = evaluate_member(seen, member, rotated=False)  # the metal is compared as it stands on the machine
         assert judged.registration is not None
         # the seat is told in spite of drift and of errors of the index that look like it
         clamp = SHOP.measuring_clamp(name)
         assert judged.registration.eccentricity == pytest.approx(clamp.eccentricity, abs=2e-3)
-        found = correct(gear_set.member(name), name, judged.file, few=True, noise=SIGMA)
+        found = correct(gear_set.member(name), judged.file, few=True, noise=SIGMA)
         source = tmp_path / f"{k}.toml"
         save_corrected(bundled("spiral_7x43.toml"), source, name, found.settings, found.index, found.motions)
         state = cut(load_bevel_set(source), name, vertical)
         states.append(state)
-    once, twice = (np.abs(standing_free(member, name, each)).max() for each in states)
+    once, twice = (np.abs(standing_free(member, each)).max() for each in states)
     assert once <= np.abs(residual).max() + 0.002
     assert twice <= np.abs(residual).max() + 3 * SIGMA
     corrected = sum(len(found.values) for found in floor.identified.values())
     few_lose = 1 + LOSS_PART  # by their choice, against all settings, which left the residual
     limit = np.hypot(rms(residual) * few_lose, SIGMA * np.sqrt(corrected / len(residual))) * 1.05
-    assert rms(standing_free(member, name, states[1])) <= limit
+    assert rms(standing_free(member, states[1])) <= limit
     once, twice = (max(cumulative_pitch(each, member.teeth, flank) for flank in FLANKS) for each in states)
     assert once <= 0.003
     mean, deviation = pitch_left_by_noise(member, state)

@@ -20,8 +20,8 @@ from gearmath.specs.flank_csv import flank_file, join
 def blank(gear_set):
     """``blank(stock, turn, advance)``: the pinion's space 0 with that much stock, clamped turned and advanced."""
     grid = blank_grid(gear_set.pinion)
-    header = flank_header(gear_set.pinion, "pinion", grid.shape, 0.1)
-    nominal = {flank: solve_flank(gear_set.pinion, "pinion", flank, grid) for flank in FLANKS}
+    header = flank_header(gear_set.pinion, grid.shape, 0.1)
+    nominal = {flank: solve_flank(gear_set.pinion, flank, grid) for flank in FLANKS}
 
     def make(stock, turn=0.0, advance=0.0):
         files = []
@@ -49,7 +49,7 @@ def bumpy(flank, row, col):
 
 @pytest.mark.parametrize("turn", [-4e-3, 1e-3, 3e-3])
 def test_even_stock_is_shared_evenly_again_after_a_turn(gear_set, blank, turn):
-    found = share_stock(gear_set.pinion, "pinion", blank(even, turn))
+    found = share_stock(gear_set.pinion, blank(even, turn))
     assert found.turn == pytest.approx(-turn, abs=2e-2 * abs(turn))
     assert abs(found.least["concave"] - found.least["convex"]) < 1e-9
     assert found.least["concave"] == pytest.approx(0.12, abs=2e-3)
@@ -65,7 +65,7 @@ def rates(file):
 def test_least_stock_is_the_optimum_of_the_linear_programme(gear_set, blank):
     """Greatest s with δ + ε (z × R)·n >= s at every point, by scipy."""
     file = blank(bumpy, 2e-3, 0.05)
-    found = share_stock(gear_set.pinion, "pinion", file)
+    found = share_stock(gear_set.pinion, file)
     turn, _ = rates(file)
     rows = np.stack([-turn, np.ones(len(file))], axis=1)
     best = linprog([0, -1], rows, file.deviation, bounds=[(-MOST_TURN, MOST_TURN), (None, None)])
@@ -76,7 +76,7 @@ def test_least_stock_is_the_optimum_of_the_linear_programme(gear_set, blank):
 def test_advance_makes_the_stock_as_even_as_the_linear_programme(gear_set, blank):
     """Least h - l with l <= δ + ε (z × R)·n + a n_z <= h at every point, by scipy."""
     file = blank(bumpy, 2e-3, 0.05)
-    found = share_stock(gear_set.pinion, "pinion", file, advance=True)
+    found = share_stock(gear_set.pinion, file, advance=True)
     turn, along = rates(file)
     one, none = np.ones(len(file)), np.zeros(len(file))
     rows = np.concatenate([np.stack([turn, along, -one, none], axis=1), np.stack([-turn, -along, none, one], axis=1)])
@@ -87,7 +87,7 @@ def test_advance_makes_the_stock_as_even_as_the_linear_programme(gear_set, blank
 
 def test_axial_shift_is_found_where_it_helps(gear_set, blank):
     file = blank(even, 0.0, 0.15)
-    fixed, free = (share_stock(gear_set.pinion, "pinion", file, advance) for advance in (False, True))
+    fixed, free = (share_stock(gear_set.pinion, file, advance) for advance in (False, True))
     assert free.advance == pytest.approx(-0.15, abs=5e-3)
     assert np.ptp([*free.least.values(), *free.most.values()]) < 0.1 * np.ptp(
         [*fixed.least.values(), *fixed.most.values()]
@@ -101,16 +101,16 @@ def test_blank_that_does_not_clean_up_is_refused_by_its_thinnest_point(gear_set,
 
     file = blank(hollow)
     with pytest.raises(ComputationError, match=r"^pinion: does not clean up: -\d+\.\d um remain on the .* 0 um are"):
-        share_stock(gear_set.pinion, "pinion", file)
+        share_stock(gear_set.pinion, file)
     with pytest.raises(ComputationError, match=r"where 200 um are needed"):
-        share_stock(gear_set.pinion, "pinion", blank(even), least=0.2)
+        share_stock(gear_set.pinion, blank(even), least=0.2)
 
 
 def test_points_without_deviation_do_not_count_but_both_flanks_must_be_there(gear_set, blank):
     file = blank(even)
     gone = replace(file, deviation=np.where(file.row == 1, np.nan, file.deviation))
-    assert share_stock(gear_set.pinion, "pinion", gone).turn == pytest.approx(0, abs=1e-9)
+    assert share_stock(gear_set.pinion, gone).turn == pytest.approx(0, abs=1e-9)
     with pytest.raises(InputError, match=r"^convex flank: no point has a deviation"):
-        share_stock(gear_set.pinion, "pinion", file.select("concave"))
+        share_stock(gear_set.pinion, file.select("concave"))
     with pytest.raises(InputError, match="member = 'pinion'"):
-        share_stock(gear_set.gear, "gear", file)
+        share_stock(gear_set.gear, file)

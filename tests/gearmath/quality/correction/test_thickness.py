@@ -21,13 +21,13 @@ CASES = [
 ]
 
 
-def gained(member, name, settings):
+def gained(member, settings):
     """What both flanks of other settings have more at the middle of the tooth, along the normals, together."""
     total = 0.0
     grid = blank_grid(member, 3, 3)
     middle = Grid(grid.axial[1:2, 1:2], grid.radial[1:2, 1:2])
     for flank in FLANKS:
-        nominal = solve_flank(member, name, flank, middle)
+        nominal = solve_flank(member, flank, middle)
         names = {
             n: float(np.degrees(v) if unit else v)
             for n, v, unit in zip(
@@ -42,7 +42,7 @@ def gained(member, name, settings):
         for _ in range(4):  # the tangent plane of the other surface at the place where the normal is
             on_line = nominal.point + t * nominal.normal
             place = Grid(on_line[:, 2:3], np.hypot(on_line[:, 0:1], on_line[:, 1:2]))
-            surface = solve_flank(other, name, flank, place)
+            surface = solve_flank(other, flank, place)
             t += float(np.sum((surface.point - on_line) * surface.normal) / np.sum(surface.normal * nominal.normal))
         total += t
     return total
@@ -53,8 +53,8 @@ def gained(member, name, settings):
 def test_teeth_become_thicker_by_what_was_asked(set_name, name, by, change):
     member = load_bevel_set(bundled(f"{set_name}.toml")).member(name)
     settings = {flank: member.flank(flank).vector for flank in FLANKS}
-    found = with_thickness(member, name, settings, change, by)
-    assert gained(member, name, found) == pytest.approx(change, abs=1e-7)
+    found = with_thickness(member, settings, change, by)
+    assert gained(member, found) == pytest.approx(change, abs=1e-7)
     moved = {flank: found[flank] - settings[flank] for flank in FLANKS}
     for flank in FLANKS:
         assert list(np.flatnonzero(moved[flank])) == [SETTINGS.index(by)]
@@ -67,6 +67,6 @@ def test_what_the_cut_does_not_allow_is_refused():
     pair = load_bevel_set(bundled("nasa_tp3096_12x36.toml"))
     settings = {flank: pair.gear.flank(flank).vector for flank in FLANKS}
     with pytest.raises(InputError, match=r"^gear: one cut makes both flanks, .* from the sliding_base$"):
-        with_thickness(pair.gear, "gear", settings, 0.01)
+        with_thickness(pair.gear, settings, 0.01)
     with pytest.raises(InputError, match=r"^thickness = 2 mm: must lie between -0\.5 and 0\.5 mm$"):
-        with_thickness(pair.gear, "gear", settings, 2.0, "sliding_base")
+        with_thickness(pair.gear, settings, 2.0, "sliding_base")

@@ -25,7 +25,7 @@ Y, X = ROW / 2 - 1, COL / 4 - 1
 
 
 def nominal(flank):
-    return solve_flank(PINION, "pinion", flank, blank_grid(PINION))
+    return solve_flank(PINION, flank, blank_grid(PINION))
 
 
 def measured(shape):
@@ -34,9 +34,7 @@ def measured(shape):
     for flank in FLANKS:
         at, d = nominal(flank), shape(flank)
         point = at.point + d[:, None] * at.normal
-        files.append(
-            flank_file(flank_header(PINION, "pinion", (5, 9)), "pinion", flank, 0, ROW, COL, point, at.normal, d)
-        )
+        files.append(flank_file(flank_header(PINION, (5, 9)), "pinion", flank, 0, ROW, COL, point, at.normal, d))
     return join(files)
 
 
@@ -92,7 +90,7 @@ def large_error(flank):
 )
 def test_what_is_expected_to_remain_is_what_the_written_settings_leave(tmp_path, shape, options):
     """Measured deviations and the flank of the written set together, to a nanometre, point by point."""
-    found = correct(PINION, "pinion", measured(shape), **options)
+    found = correct(PINION, measured(shape), **options)
     save_corrected(SOURCE, tmp_path / "corrected.toml", "pinion", found.settings, None, found.motions)
     written = load_bevel_set(tmp_path / "corrected.toml").pinion
     for flank in FLANKS:
@@ -105,11 +103,11 @@ def test_what_is_expected_to_remain_is_what_the_written_settings_leave(tmp_path,
 
 def test_second_correction_goes_on_from_the_settings_of_the_first(tmp_path):
     """The machine was set to corrected values; what is measured then is added to the flank that they cut."""
-    first = correct(PINION, "pinion", measured(large_error))
+    first = correct(PINION, measured(large_error))
     save_corrected(SOURCE, tmp_path / "first.toml", "pinion", first.settings, None, first.motions)
     once = load_bevel_set(tmp_path / "first.toml").pinion
     left = {flank: first.identified[(flank,)].residual + 0.004 * X for flank in FLANKS}
-    second = correct(once, "pinion", measured(left.__getitem__), root_limit=ROOT_LIMIT)
+    second = correct(once, measured(left.__getitem__), root_limit=ROOT_LIMIT)
     save_corrected(tmp_path / "first.toml", tmp_path / "second.toml", "pinion", second.settings, None, second.motions)
     twice = load_bevel_set(tmp_path / "second.toml").pinion
     for flank in FLANKS:
@@ -119,9 +117,9 @@ def test_second_correction_goes_on_from_the_settings_of_the_first(tmp_path):
 
 
 def test_nothing_measured_changes_no_setting_that_was_corrected_before(tmp_path):
-    first = correct(PINION, "pinion", measured(large_error))
+    first = correct(PINION, measured(large_error))
     save_corrected(SOURCE, tmp_path / "first.toml", "pinion", first.settings, None, first.motions)
     once = load_bevel_set(tmp_path / "first.toml").pinion
-    again = correct(once, "pinion", measured(lambda flank: np.zeros(45)), few=True)
+    again = correct(once, measured(lambda flank: np.zeros(45)), few=True)
     for flank in FLANKS:
         np.testing.assert_array_equal(again.settings[flank], once.flank(flank).vector)

@@ -23,7 +23,7 @@ CORNERS = ((0, 0), (0, 8), (2, 4), (4, 0), (4, 8))
 @pytest.fixture(scope="module")
 def measured(gear_set):
     """A pinion with 2 um of uneven index and 0.5 um of noise; tooth 0 in full, and its corners again at the end."""
-    nominal = {flank: nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
+    nominal = {flank: nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
 
     def make(again=CORNERS, by_flank=False, sigma=0.5 * UM):
         rng, parts = np.random.default_rng(5), []
@@ -100,8 +100,8 @@ def test_steady_drift_is_told_whatever_its_direction_and_the_order_of_measuring(
 
 def test_slip_withholds_pitch_and_its_grade_and_leaves_runout_form_and_index_alone(measured, gear_set):
     """60 um before tooth 6: the rotation, and what would be an error of tooth 0, are none of the gear's."""
-    clean = evaluate_member(measured(), gear_set.pinion, "pinion")
-    found = evaluate_member(slipped(measured(), 6, 60 * UM), gear_set.pinion, "pinion")
+    clean = evaluate_member(measured(), gear_set.pinion)
+    found = evaluate_member(slipped(measured(), 6, 60 * UM), gear_set.pinion)
     assert found.left_out == ()
     (said,) = found.closing.said
     assert said.startswith("the work or the machine slipped by 6")
@@ -125,7 +125,7 @@ def test_large_steady_drift_is_said_first_and_leaves_no_grade(measured, gear_set
     """100 um: the pitch is that without it to 2 um, but it is more than the tolerance of its grade."""
     file = measured(again=((2, 4),))
     drift = moved(file, 100 * UM * np.linspace(0, 1, len(file)) * arm(file))
-    clean, found = (evaluate_member(each, gear_set.pinion, "pinion") for each in (file, drift))
+    clean, found = (evaluate_member(each, gear_set.pinion) for each in (file, drift))
     assert found.first[0].startswith("the work or the machine drifted by ")
     assert found.flanks["convex"].pitch.total == pytest.approx(clean.flanks["convex"].pitch.total, abs=2 * UM)
     assert found.verdict.grade is None
@@ -137,7 +137,7 @@ def test_small_motion_costs_no_grade_where_the_pitch_is_larger(measured, gear_se
     """5 um on teeth that are uneven by 50 um: said first, and taken out as an even drift."""
     uneven = 50 * UM * np.random.default_rng(2).standard_normal(12)
     file = slipped(measured(), 6, 5 * UM)
-    found = evaluate_member(moved(file, uneven[file.tooth % 12] * arm(file)), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(file, uneven[file.tooth % 12] * arm(file)), gear_set.pinion)
     assert found.closing.kind == "small"
     assert found.verdict.withheld == {}
     assert "taken out as an even drift" in found.first[0]
@@ -174,7 +174,7 @@ def test_return_value_within_its_uncertainty_is_no_motion(measured):
 def test_single_point_of_one_flank_that_is_off_at_the_end_is_a_miss(measured, gear_set):
     file = measured(again=((2, 4),))
     k = np.flatnonzero((file.tooth == 12) & (file.flank == "convex"))
-    found = evaluate_member(moved(file, np.where(np.arange(len(file)) == k, 0.09, 0.0)), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(file, np.where(np.arange(len(file)) == k, 0.09, 0.0)), gear_set.pinion)
     assert found.closing.kind == "still"
     (line,) = found.left_out
     assert line.startswith("convex flank, tooth 12, row 2, col 4: ")

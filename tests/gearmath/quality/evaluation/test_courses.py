@@ -25,7 +25,7 @@ NO_CORNERS = (1, 5, 7, 11)
 def pinion(gear_set) -> FlankFile:
     """A whole run as programs make it: tooth 0 in full, corners on eight teeth, tooth 0 again; 3 um of uneven index."""
     spec = gear_set.pinion
-    nominal = {flank: nominal_flank(spec, "pinion", flank, blank_grid(spec)) for flank in FLANKS}
+    nominal = {flank: nominal_flank(spec, flank, blank_grid(spec)) for flank in FLANKS}
     parts = []
     for tooth in range(13):
         for one in nominal.values():
@@ -62,9 +62,7 @@ COURSES = {
 @pytest.mark.parametrize("course", COURSES)
 def test_drift_that_is_not_even_in_time_is_not_called_steady(pinion, gear_set, course: str) -> None:
     t = np.linspace(0, 1, len(pinion))
-    found = evaluate_member(
-        moved(pinion, 50 * UM * COURSES[course](t) * turn_by_one(pinion)), gear_set.pinion, "pinion"
-    )
+    found = evaluate_member(moved(pinion, 50 * UM * COURSES[course](t) * turn_by_one(pinion)), gear_set.pinion)
     assert found.closing.kind in ("uneven", "not told", "step")
     assert "taken out" not in found.first[0]
     assert found.verdict is not None
@@ -75,7 +73,7 @@ def test_drift_that_is_not_even_in_time_is_not_called_steady(pinion, gear_set, c
 
 def test_even_drift_stays_a_steady_one(pinion, gear_set) -> None:
     t = np.linspace(0, 1, len(pinion))
-    found = evaluate_member(moved(pinion, 50 * UM * t * turn_by_one(pinion)), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(pinion, 50 * UM * t * turn_by_one(pinion)), gear_set.pinion)
     assert found.closing.kind == "steady"
     found.closing.check_topography()
 
@@ -85,8 +83,7 @@ def test_drift_that_speeds_up_or_slows_down_is_not_called_steady_and_has_no_grad
     """It differs from an even one by a parabola, nearly all of which eccentricity has too: F_p is said to be unsure."""
     t = np.linspace(0, 1, len(pinion))
     even, found = (
-        evaluate_member(moved(pinion, 50 * UM * c * turn_by_one(pinion)), gear_set.pinion, "pinion")
-        for c in (t, course(t))
+        evaluate_member(moved(pinion, 50 * UM * c * turn_by_one(pinion)), gear_set.pinion) for c in (t, course(t))
     )
     assert "steady" not in found.first[0]
     assert found.verdict is not None
@@ -99,10 +96,10 @@ def test_drift_that_speeds_up_or_slows_down_is_not_called_steady_and_has_no_grad
 
 @pytest.mark.parametrize(("tooth", "after"), [(3, 1), (3, 5), (6, 2), (6, 9), (8, 4)])
 def test_slip_inside_a_tooth_makes_neither_clamping_nor_runout(pinion, gear_set, tooth: int, after: int) -> None:
-    clean = evaluate_member(pinion, gear_set.pinion, "pinion")
+    clean = evaluate_member(pinion, gear_set.pinion)
     begin = int(np.flatnonzero(pinion.tooth == tooth)[after])
     slip = 40 * UM * (np.arange(len(pinion)) >= begin) * turn_by_one(pinion)
-    found = evaluate_member(moved(pinion, slip), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(pinion, slip), gear_set.pinion)
     assert found.closing.kind == "step"
     assert found.closing.course.argmax() == begin
     assert found.closing.teeth == (tooth, tooth)
@@ -118,7 +115,7 @@ def test_slip_inside_a_tooth_makes_neither_clamping_nor_runout(pinion, gear_set,
 def test_point_touched_before_a_slip_that_all_others_came_after_is_left_out(pinion, gear_set) -> None:
     """The first point alone stands 15 um aside: it was touched again, and only it differs."""
     slip = 15 * UM * (np.arange(len(pinion)) >= 1) * turn_by_one(pinion)
-    found = evaluate_member(moved(pinion, slip), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(pinion, slip), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("concave flank, tooth 0, row 0, col 0: ")
     assert "where it was touched again; left out" in line

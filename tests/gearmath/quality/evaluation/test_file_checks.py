@@ -22,7 +22,7 @@ def good(gear_set):
     files = []
     for flank in FLANKS:
         for tooth in range(12):
-            one = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion), tooth=tooth)
+            one = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion), tooth=tooth)
             files.append(one if tooth == 0 else one.pick((one.row == 2) & (one.col == 4)))
     file = join(files)
     left = 1e-3 * (5.0 + 10.0 * file.row)
@@ -55,7 +55,7 @@ def test_what_most_rows_would_fit_is_named(gear_set, good, name):
     change, words = OTHERWISE[name]
     file = change(good)
     with pytest.raises(InputError, match=words):
-        check_points(file, nominal_rows(file, gear_set.pinion, "pinion"), gear_set.pinion, "pinion")
+        check_points(file, nominal_rows(file, gear_set.pinion), gear_set.pinion)
 
 
 def test_one_point_off_is_no_other_way_to_count(gear_set, good):
@@ -63,8 +63,8 @@ def test_one_point_off_is_no_other_way_to_count(gear_set, good):
     point[17] += [0.3, 0, 0.3]
     file = replace(good, deviation=0 * good.deviation, point=point)
     with pytest.raises(InputError, match="1 of 112 points are off the flank"):
-        check_points(file, nominal_rows(file, gear_set.pinion, "pinion"), gear_set.pinion, "pinion")
+        check_points(file, nominal_rows(file, gear_set.pinion), gear_set.pinion)
 
 
 def test_good_file_passes(gear_set, good):
-    check_points(good, nominal_rows(good, gear_set.pinion, "pinion"), gear_set.pinion, "pinion")
+    check_points(good, nominal_rows(good, gear_set.pinion), gear_set.pinion)

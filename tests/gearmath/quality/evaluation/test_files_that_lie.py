@@ -24,7 +24,7 @@ def nominal(gear_set) -> FlankFile:
     files = []
     for tooth in range(12):
         for flank in FLANKS:
-            one = nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion), tooth=tooth)
+            one = nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion), tooth=tooth)
             files.append(one if tooth == 0 else one.pick((one.row == 2) & (one.col == 4)))
     file = join(files)
     return replace(file, deviation=np.zeros(len(file)), uncertainty=np.full(len(file), NOISE))
@@ -44,7 +44,7 @@ def moved(file: FlankFile, change: np.ndarray) -> FlankFile:
 
 
 def test_honest_measurement_has_a_grade_and_no_word_against_it(gear_set, measured) -> None:
-    found = evaluate_member(measured, gear_set.pinion, "pinion")
+    found = evaluate_member(measured, gear_set.pinion)
     assert found.first == ()
     assert found.verdict is not None
     assert found.verdict.grade is not None
@@ -52,7 +52,7 @@ def test_honest_measurement_has_a_grade_and_no_word_against_it(gear_set, measure
 
 @pytest.mark.parametrize(("offset", "words"), [(0, "are 0, which no measurement gives: is it a copy"), (7, "7.000")])
 def test_nominal_file_given_as_a_measurement_is_said_to_be_and_has_no_grade(gear_set, nominal, offset, words) -> None:
-    found = evaluate_member(moved(nominal, np.full(len(nominal), offset * UM)), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(nominal, np.full(len(nominal), offset * UM)), gear_set.pinion)
     assert words in found.first[0]
     assert found.verdict is not None
     assert found.verdict.grade is None
@@ -65,7 +65,7 @@ def test_deviations_rounded_coarsely_are_said_with_their_step_and_its_uncertaint
 ) -> None:
     rounded = np.round(measured.deviation / step) * step
     write_flank_csv(tmp_path / "rounded.csv", moved(measured, rounded - measured.deviation))
-    found = evaluate_member(read_flank_csv(tmp_path / "rounded.csv"), gear_set.pinion, "pinion")
+    found = evaluate_member(read_flank_csv(tmp_path / "rounded.csv"), gear_set.pinion)
     (line,) = [line for line in found.first if "rounded" in line]
     assert f"rounded to {step * 1000:g} um" in line
     assert f"better than {step * 1000 / np.sqrt(12):.1f} um" in line
@@ -79,7 +79,7 @@ def test_coordinates_rounded_to_a_hundredth_are_named_where_they_do_not_agree_wi
 ) -> None:
     file = replace(measured, point=np.round(measured.point, 2))
     with pytest.raises(InputError, match="they are rounded to 10 um"):
-        evaluate_member(file, gear_set.pinion, "pinion")
+        evaluate_member(file, gear_set.pinion)
 
 
 @pytest.mark.parametrize("step", [0.1, 0.0254, 0.01, 0.00254])
@@ -99,7 +99,7 @@ def test_two_rows_or_columns_of_a_smooth_flank_that_are_exchanged_are_named(gear
     at = {(r, c): d for r, c, d in values}
     change = np.zeros(len(measured))
     change[first] = [at[place] for place in zip(rows[first], cols[first], strict=True)] - measured.deviation[first]
-    found = evaluate_member(moved(measured, change), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(measured, change), gear_set.pinion)
     (line,) = [line for line in found.first if "exchanged" in line]
     assert f"{'rows' if axis == 'row' else 'columns'} {one} and {two} of the convex flank, tooth 0, look" in line
 
@@ -112,14 +112,14 @@ def test_no_rows_are_said_to_be_exchanged_on_flanks_of_any_smooth_form_or_tip_re
         form = c[0] * x + c[1] * y + c[2] * x * y + c[3] * x**2 + c[4] * y**2 + c[5] * x**3 + c[6] * y**3
         form += c[7] * x**2 * y - 15 * (nominal.row == 4) * (k % 2)
         file = moved(nominal, form * UM + NOISE * random.standard_normal(len(nominal)))
-        said = evaluate_member(file, gear_set.pinion, "pinion").suspicions
+        said = evaluate_member(file, gear_set.pinion).suspicions
         assert not [line for line in said if "exchanged" in line]
 
 
 @pytest.mark.parametrize(("offset", "withheld"), [(0.1, False), (1.0, True), (-0.4, True)])
 def test_offset_beyond_the_backlash_of_a_pair_is_said_and_gives_no_grade(gear_set, measured, offset, withheld) -> None:
     """One millimetre is a tip radius that was not taken off; the limit is 0.12 of the module of thickness."""
-    found = evaluate_member(moved(measured, np.full(len(measured), offset)), gear_set.pinion, "pinion")
+    found = evaluate_member(moved(measured, np.full(len(measured), offset)), gear_set.pinion)
     assert any(line.startswith("all points of both flanks stand") for line in found.first)
     assert any("more than the backlash of any finished pair" in line for line in found.first) == withheld
     assert found.verdict is not None

@@ -29,7 +29,7 @@ def runout(size, noise):
 
 
 def verdict(ball, u=0.0):
-    return grade_member(PINION, "pinion", PITCHES, ball, STILL, dict.fromkeys(FLANKS, u))
+    return grade_member(PINION, PITCHES, ball, STILL, dict.fromkeys(FLANKS, u))
 
 
 def test_runout_is_graded_where_it_is_more_than_noise_alone_gives():
@@ -44,7 +44,7 @@ def test_runout_is_graded_where_it_is_more_than_noise_alone_gives():
 
 def test_figure_is_graded_where_its_uncertainty_is_below_the_step_of_the_grades():
     """f_pt is 3.0 um; the step from the grade that holds it to the next one, of the rounded tolerances."""
-    data = gear_data(PINION, "pinion")
+    data = gear_data(PINION)
     grade = verdict(runout(0.02, 1e-4)).grades["f_pt"]
     fine, coarse = (
         iso17485(data.mean_normal_module, data.tolerance_diameter, each).rounded["f_pt"] for each in (grade, grade + 1)

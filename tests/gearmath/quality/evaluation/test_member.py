@@ -31,12 +31,12 @@ def pair(clamped, pinion) -> tuple[FlankFile, FlankFile]:
     """The pinion in a bad seat and in a good one: two teeth in full, corners and reference point of all others."""
     index = {flank: 1e-5 * np.sin(3 * np.arange(12)) for flank in ("concave", "convex")}
     given = {"teeth": TEETH, "places": [0, 8, 22, 36, 44], "whole": (0, 6), "index": index, "form": form}
-    return clamped(pinion, "pinion", SEAT, **given), clamped(pinion, "pinion", **given)
+    return clamped(pinion, SEAT, **given), clamped(pinion, **given)
 
 
 def test_registered_figures_are_those_of_the_gear_in_a_good_seat(pair, pinion):
     bad, good = pair
-    found, wanted = evaluate_member(bad, pinion, "pinion"), evaluate_member(good, pinion, "pinion", False)
+    found, wanted = evaluate_member(bad, pinion), evaluate_member(good, pinion, False)
     for flank in ("concave", "convex"):
         one, other = found.flanks[flank], wanted.flanks[flank]
         assert [each.tooth for each in one.topographies] == [0, 6]
@@ -54,7 +54,7 @@ def test_registered_figures_are_those_of_the_gear_in_a_good_seat(pair, pinion):
 def test_misses_and_missing_points_are_left_out_in_words_and_change_nothing_else(pair, pinion):
     """A probe that missed by 0.4 mm on the grid of tooth 0, one on tooth 3, and a point that is not there."""
     bad, _ = pair
-    clean = evaluate_member(bad, pinion, "pinion")
+    clean = evaluate_member(bad, pinion)
     at = {"grid": (0, 1, 2), "single": (3, 2, 4), "absent": (6, 3, 3)}
     rows = {
         key: int(np.flatnonzero((bad.flank == "convex") & (bad.tooth == t) & (bad.row == r) & (bad.col == c))[0])
@@ -64,7 +64,7 @@ def test_misses_and_missing_points_are_left_out_in_words_and_change_nothing_else
     off[rows["grid"]], off[rows["single"]] = 0.4, -0.4
     dirty = replace(bad, deviation=bad.deviation + off, point=bad.point + off[:, None] * bad.normal)
     dirty = dirty.pick(np.arange(len(bad)) != rows["absent"])
-    found = evaluate_member(dirty, pinion, "pinion")
+    found = evaluate_member(dirty, pinion)
     for place, words in (
         ("convex flank, tooth 0, row 1, col 2", "off the smooth surface through the others; left out"),
         ("convex flank, tooth 3, row 2, col 4", "off the other points of its tooth; left out"),
@@ -85,7 +85,7 @@ def test_misses_and_missing_points_are_left_out_in_words_and_change_nothing_else
 
 def test_what_the_points_do_not_tell_is_said_and_the_rest_is_judged(pair, pinion):
     few = pair[0].pick(pair[0].tooth == 0)
-    found = evaluate_member(few, pinion, "pinion")
+    found = evaluate_member(few, pinion)
     assert found.registration is None
     assert found.remarks == (
         "not registered: concave flank: 1 tooth was measured: registration needs 8 of both flanks",
@@ -98,7 +98,7 @@ def test_pitch_alone_is_judged_without_a_topography(pair, pinion):
     """Reference points only: pitch, runout and thickness are those of the whole file; nothing is said of the form."""
     bad, _ = pair
     only = bad.pick((bad.row == 2) & (bad.col == 4))
-    found, wanted = (evaluate_member(each, pinion, "pinion", False) for each in (only, bad))
+    found, wanted = (evaluate_member(each, pinion, False) for each in (only, bad))
     for flank in ("concave", "convex"):
         assert (found.flanks[flank].mean, found.flanks[flank].orders) == (None, None)
         assert set(found.flanks[flank].as_dict()) == {
@@ -119,7 +119,7 @@ def test_teeth_measured_in_part_withhold_maxima_and_grades_but_nothing_else(pair
     """Nine of twelve teeth all around."""
     bad, _ = pair
     gone = [1, 4, 8]
-    found, wanted = (evaluate_member(each, pinion, "pinion") for each in (bad.pick(~np.isin(bad.tooth, gone)), bad))
+    found, wanted = (evaluate_member(each, pinion) for each in (bad.pick(~np.isin(bad.tooth, gone)), bad))
     assert np.abs(found.registration.seat - SEAT)[:2].max() < 0.1 * UM
     assert found.thickness.deviation.shape == (9,)
     reason = "concave flank: no reading of teeth 1, 4, 8 (3 of 12)"
@@ -156,19 +156,19 @@ def turned_to_zero(file):
 def test_phase_that_is_not_as_the_header_says_is_refused_by_its_name(pair, pinion):
     lying = replace(pair[1], header=pair[1].header | {"phase_zeroed": "true"})
     with pytest.raises(InputError, match=r"phase_zeroed = true: the reference point of the concave flank, tooth 0"):
-        evaluate_member(lying, pinion, "pinion")
+        evaluate_member(lying, pinion)
     one_only = turned_to_zero(pair[1])
     off = 0.005 * (one_only.flank == "convex")
     one_only = replace(
         one_only, deviation=one_only.deviation + off, point=one_only.point + off[:, None] * one_only.normal
     )
     with pytest.raises(InputError, match=r"convex flank, tooth 0, deviates by \+5\.00 um, must be 0 within 1 um"):
-        evaluate_member(one_only, pinion, "pinion")
+        evaluate_member(one_only, pinion)
 
 
 def test_zeroed_phase_says_nothing_of_the_thickness(pair, pinion):
     zeroed = turned_to_zero(pair[1])
-    found = evaluate_member(zeroed, pinion, "pinion")
+    found = evaluate_member(zeroed, pinion)
     assert found.thickness is None
     assert "no tooth thickness: the phase of the flanks was set to zero by turning (phase_zeroed)" in found.remarks
 
@@ -176,11 +176,11 @@ def test_zeroed_phase_says_nothing_of_the_thickness(pair, pinion):
 def test_wrong_member_hand_and_unit_are_one_sentence(pair, pinion, gear_set):
     bad, _ = pair
     with pytest.raises(InputError, match="member = 'pinion' in the measured file: must be 'gear'"):
-        evaluate_member(bad, gear_set.gear, "gear")
+        evaluate_member(bad, gear_set.gear)
     with pytest.raises(InputError, match=r"the file is of the other hand$"):
-        evaluate_member(replace(bad, point=bad.point * [1, -1, 1]), pinion, "pinion")
+        evaluate_member(replace(bad, point=bad.point * [1, -1, 1]), pinion)
     with pytest.raises(InputError, match=r"the numbers are inches: convert the file to mm$"):
-        evaluate_member(replace(bad, point=bad.point / 25.4), pinion, "pinion")
+        evaluate_member(replace(bad, point=bad.point / 25.4), pinion)
 
 
 def drifted(file, vector):
@@ -208,7 +208,7 @@ def drifted(file, vector):
 def test_drift_of_the_machine_is_taken_out_and_leaves_seat_and_pitch_alone(pair, pinion, vector):
     """5 µm in any direction, along the tooth too, which the points touched again do not feel."""
     file, (clean, _) = drifted(pair[0], np.array(vector) * UM), pair
-    found, wanted = (evaluate_member(each, pinion, "pinion") for each in (file, clean))
+    found, wanted = (evaluate_member(each, pinion) for each in (file, clean))
     assert set(found.drifts) == {"concave", "convex"}
     for flank, drift in found.drifts.items():
         (first,) = np.flatnonzero((clean.flank == flank) & (clean.tooth == 0) & (clean.row == 2) & (clean.col == 4))
@@ -221,7 +221,7 @@ def test_drift_of_the_machine_is_taken_out_and_leaves_seat_and_pitch_alone(pair,
 
 
 def test_picture_shows_both_flanks_pitch_and_runout(pair, pinion):
-    figure = evaluation_figure("pinion", evaluate_member(pair[0], pinion, "pinion"))
+    figure = evaluation_figure("pinion", evaluate_member(pair[0], pinion))
     labels = [place.get_ylabel() for place in figure.axes]
     assert labels.count("cumulative pitch deviation / µm") == 1
     assert labels.count("ball, normal to the pitch cone / µm") == 1

@@ -81,8 +81,8 @@ def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title,
     """Both hands and both members: to 0.1 µm, tilt over the face width, and at least 99 % of the effect is gone."""
     member = witnessed(title, name)
     given = {"teeth": around(member), "places": places, "index": uneven(member), "form": form}
-    measured, truth = (clamped(member, name, seat, **given) for seat in (SEAT, np.zeros(4)))
-    found = register(measured, member, name)
+    measured, truth = (clamped(member, seat, **given) for seat in (SEAT, np.zeros(4)))
+    found = register(measured, member)
     assert max(off_by(found, SEAT, member)) < TENTH
     assert found.tilt_found
     effect = np.abs(measured.deviation - truth.deviation).max()
@@ -99,7 +99,7 @@ def test_seat_is_found_and_taken_out_whatever_form_and_pitch_are(clamped, title,
 def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear_set):
     """0.4 mm and 0.2°: the first step misses by more than 1 µm, the iteration does not."""
     member, seat = gear_set.pinion, np.array([0.3, -0.25, 2e-3, 3e-3])
-    found = register(clamped(member, "pinion", seat, around(member), FIVE), member, "pinion")
+    found = register(clamped(member, seat, around(member), FIVE), member)
     assert max(off_by(found, seat, member)) < TENTH
     assert np.abs(found.file.deviation).max() < TENTH
 
@@ -107,10 +107,10 @@ def test_a_seat_beyond_first_order_is_found_by_the_exact_transform(clamped, gear
 @pytest.mark.parametrize("title", ["nasa_tp3096_12x36", "spiral_7x43"])
 def test_first_harmonic_of_the_index_stays_in_the_pitch(clamped, title):
     """10 arcsec of the A axis on every tooth: eccentricity does the same to one flank, but not at every place."""
-    name, member = "pinion", witnessed(title, "pinion")
+    member = witnessed(title, "pinion")
     index = uneven(member, 0.0, math.radians(10 / 3600))
-    file = clamped(member, name, SEAT, range(member.teeth), FIVE, index)
-    found = register(file, member, name)
+    file = clamped(member, SEAT, range(member.teeth), FIVE, index)
+    found = register(file, member)
     assert max(off_by(found, SEAT, member)) < TENTH
     for flank in ("concave", "convex"):
         turning = evaluate_pitch(found.file, member.teeth, flank).turning
@@ -121,8 +121,8 @@ def test_ordinary_file_gives_the_eccentricity_at_its_height_and_says_what_it_doe
     """One place on all teeth but one: tilt is dropped in words; without tilt the eccentricity is exact."""
     member, index = gear_set.pinion, uneven(gear_set.pinion)
     index["convex"] = index["concave"]
-    file = clamped(member, "pinion", SEAT * [1, 1, 0, 0], range(12), [22], index, form, whole=[0])
-    found = register(file, member, "pinion")
+    file = clamped(member, SEAT * [1, 1, 0, 0], range(12), [22], index, form, whole=[0])
+    found = register(file, member)
     assert not found.tilt_found
     assert off_by(found, SEAT * [1, 1, 0, 0], member)[0] < TENTH
     assert np.isnan(found.covariance[2:]).all()
@@ -132,9 +132,9 @@ def test_ordinary_file_gives_the_eccentricity_at_its_height_and_says_what_it_doe
 
 def test_one_place_of_a_flat_gear_is_refused_with_the_reason(clamped, gear_set):
     """The radial part of a gear's normals is small, so that a tilt there looks like much eccentricity."""
-    file = clamped(gear_set.gear, "gear", SEAT, around(gear_set.gear, 12), [22])
+    file = clamped(gear_set.gear, SEAT, around(gear_set.gear, 12), [22])
     with pytest.raises(InputError, match=r"10 um per 100 mm looks like 1\d\.\d um of eccentricity: measure three or"):
-        register(file, gear_set.gear, "gear")
+        register(file, gear_set.gear)
 
 
 def test_with_noise_the_seat_is_within_its_standard_uncertainties(clamped, gear_set):
@@ -144,12 +144,12 @@ def test_with_noise_the_seat_is_within_its_standard_uncertainties(clamped, gear_
     within 1 ± 0.33, three standard deviations of it.
     """
     member = gear_set.gear
-    file = clamped(member, "gear", SEAT, around(member), FIVE, uneven(member), form)
+    file = clamped(member, SEAT, around(member), FIVE, uneven(member), form)
     ratios, noises = [], []
     for seed in range(50):
         noise = 0.5 * UM * np.random.default_rng(seed).standard_normal(len(file))
         noisy = replace(file, deviation=file.deviation + noise, point=file.point + noise[:, None] * file.normal)
-        found = register(noisy, member, "gear")
+        found = register(noisy, member)
         ratios.append((found.seat - SEAT) / found.uncertainty)
         noises.append(found.noise)
     ratios = np.array(ratios)
@@ -162,10 +162,10 @@ def test_with_noise_the_seat_is_within_its_standard_uncertainties(clamped, gear_
 def test_seat_and_what_is_taken_off_are_linear_in_the_deviations(clamped, gear_set):
     """The gain and the columns against registering again with other deviations: what covariances are carried by."""
     member = gear_set.gear
-    file = clamped(member, "gear", SEAT, around(member), FIVE, uneven(member), form)
+    file = clamped(member, SEAT, around(member), FIVE, uneven(member), form)
     change = 0.5 * UM * np.random.default_rng(1).standard_normal(len(file))
     other = replace(file, deviation=file.deviation + change, point=file.point + change[:, None] * file.normal)
-    first, second = register(file, member, "gear"), register(other, member, "gear")
+    first, second = register(file, member), register(other, member)
     size = np.abs(second.seat - first.seat)
     np.testing.assert_allclose(first.gain @ change, second.seat - first.seat, rtol=0, atol=2e-3 * size.max())
     expected = change - first.columns @ first.gain @ change
@@ -179,13 +179,13 @@ def nominal(member, name, deviation, teeth):
     grid, files = blank_grid(member), []
     row, col = (index.ravel() for index in np.indices(grid.shape))
     for flank in ("concave", "convex"):
-        points = solve_flank(member, name, flank, grid)
+        points = solve_flank(member, flank, grid)
         for tooth in teeth:
             a = 2 * np.pi * tooth / member.teeth
             turn = np.array([[np.cos(a), np.sin(a), 0], [-np.sin(a), np.cos(a), 0], [0, 0, 1]])
             R, n = points.point @ turn, points.normal @ turn
             d = deviation(R, n)
-            header = flank_header(member, name, grid.shape)
+            header = flank_header(member, grid.shape)
             files.append(flank_file(header, name, flank, tooth, row, col, R + d[:, None] * n, n, d))
     return join(files)
 
@@ -194,7 +194,7 @@ def test_axial_shift_is_reported_as_its_setting_and_never_taken_out(gear_set):
     """20 µm along the axis are 20 µm times the z of every normal."""
     member = gear_set.pinion
     file = nominal(member, "pinion", lambda R, n: 20 * UM * n[:, 2], around(member))
-    found = register(file, member, "pinion")
+    found = register(file, member)
     assert found.axial == pytest.approx(20 * UM, rel=1e-9)
     np.testing.assert_allclose(found.file.deviation, file.deviation, rtol=0, atol=1e-9)
     share = found.axial_position.share
@@ -213,7 +213,7 @@ def test_members_of_every_set_and_cutting_method_are_registered(title, name):
     perfect = perfect.pick(np.isin(perfect.row * 9 + perfect.col, FIVE))
     clamp = Mounting(eccentricity=0.015, eccentricity_direction=-37.0, tilt=0.00573, tilt_direction=60.0)
     shop = SimulatedMachine(title="clamped", seed=0, measuring=SimulatedMeasuring(pinion=clamp, gear=clamp))
-    found = register(measure_member(perfect, member, name, shop), member, name)
+    found = register(measure_member(perfect, member, shop), member)
     assert found.eccentricity == pytest.approx(15 * UM, abs=TENTH)
     assert found.eccentricity * abs(found.eccentricity_direction - math.radians(-37)) < TENTH
     assert found.tilt * member.blank.face_width == pytest.approx(math.radians(0.00573) * 25.4, abs=TENTH)
@@ -223,17 +223,17 @@ def test_members_of_every_set_and_cutting_method_are_registered(title, name):
 
 def test_share_of_settings_is_none_where_their_sensitivities_are_not_known():
     member = load_bevel_set(bundled("crown_gear_hobbed_14x39.toml")).gear
-    found = register(nominal(member, "gear", lambda R, n: 1e-3 * n[:, 2], around(member)), member, "gear")
+    found = register(nominal(member, "gear", lambda R, n: 1e-3 * n[:, 2], around(member)), member)
     assert found.axial == pytest.approx(1 * UM, rel=1e-6)
     assert found.axial_position.share["other settings"] is None
 
 
 def test_points_without_deviation_are_carried_along(clamped, gear_set):
     member = gear_set.pinion
-    file = clamped(member, "pinion", SEAT, around(member), FIVE)
+    file = clamped(member, SEAT, around(member), FIVE)
     silent = file.deviation.copy()
     silent[[3, 17]] = np.nan
-    found = register(replace(file, deviation=silent), member, "pinion")
+    found = register(replace(file, deviation=silent), member)
     assert max(off_by(found, SEAT, member)) < TENTH
     assert np.flatnonzero(np.isnan(found.file.deviation)).tolist() == [3, 17]
 
@@ -243,11 +243,11 @@ def test_too_few_teeth_and_teeth_on_one_side_are_refused(gear_set):
     one = nominal(member, "gear", lambda R, n: 0 * R[:, 0], range(8))
     few, aside = one.pick(one.tooth < 7), one
     with pytest.raises(InputError, match="concave flank: 7 teeth were measured: registration needs 8 of both flanks"):
-        register(few, member, "gear")
+        register(few, member)
     with pytest.raises(InputError, match="leave out 290 degrees of the turn: registration allows 120"):
-        register(aside, member, "gear")
+        register(aside, member)
     with pytest.raises(InputError, match="convex flank: 0 teeth were measured"):
-        register(nominal(member, "gear", lambda R, n: 0 * R[:, 0], around(member)).select("concave"), member, "gear")
+        register(nominal(member, "gear", lambda R, n: 0 * R[:, 0], around(member)).select("concave"), member)
 
 
 @pytest.mark.parametrize(
@@ -263,7 +263,7 @@ def test_points_off_the_flank_are_refused_with_the_likeliest_cause(gear_set, cha
     member = gear_set.pinion
     file = nominal(member, "pinion", lambda R, n: 0 * R[:, 0], around(member))
     with pytest.raises(InputError, match=r"concave flank, tooth 0, row 0, col 0: .* beside the nominal.*" + cause):
-        register(replace(file, point=change(file.point)), member, "pinion")
+        register(replace(file, point=change(file.point)), member)
 
 
 def test_points_of_other_margins_are_off_their_places(gear_set):
@@ -271,7 +271,7 @@ def test_points_of_other_margins_are_off_their_places(gear_set):
     file = nominal(gear_set.pinion, "pinion", lambda R, n: 0 * R[:, 0], around(gear_set.pinion))
     for margins in ("0.1,0.05", "0.1,0.1,0.1,0.05"):
         with pytest.raises(InputError, match=r"beside the nominal normal"):
-            register(replace(file, header=file.header | {"margins": margins}), gear_set.pinion, "pinion")
+            register(replace(file, header=file.header | {"margins": margins}), gear_set.pinion)
 
 
 def test_single_points_off_the_flank_are_counted(gear_set):
@@ -279,7 +279,7 @@ def test_single_points_off_the_flank_are_counted(gear_set):
     point = file.point.copy()
     point[[5, 50]] += 0.2
     with pytest.raises(InputError, match=r"row 0, col 5: .* 2 of 720 points are off the flank"):
-        register(replace(file, point=point), gear_set.pinion, "pinion")
+        register(replace(file, point=point), gear_set.pinion)
 
 
 def reference_and_corners(gear_set, seat, noise, seeds):
@@ -288,7 +288,7 @@ def reference_and_corners(gear_set, seat, noise, seeds):
     row, col = (index.ravel() for index in np.indices((5, 9)))
     parts = []
     for flank in ("concave", "convex"):
-        nominal = solve_flank(member, "pinion", flank, blank_grid(member))
+        nominal = solve_flank(member, flank, blank_grid(member))
         for tooth in range(member.teeth):
             about = 2 * np.pi * tooth / member.teeth
             c, s = np.cos(about), np.sin(about)
@@ -297,7 +297,7 @@ def reference_and_corners(gear_set, seat, noise, seeds):
             point, normal = nominal.point[keep] @ turn.T, nominal.normal[keep] @ turn.T
             off = normal @ [*seat[:2], 0] + np.cross(point, normal) @ [*seat[2:], 0]
             parts.append((flank, tooth, row[keep], col[keep], point, normal, off))
-    header = flank_header(member, "pinion", blank_grid(member).shape)
+    header = flank_header(member, blank_grid(member).shape)
     for seed in seeds:
         random, files = np.random.default_rng(seed), []
         for flank, tooth, r, k, point, normal, off in parts:
@@ -313,7 +313,7 @@ def test_pitch_of_a_perfect_pinion_is_not_made_worse_by_a_clamping_that_is_noise
     """40 measurements with 0.5 um of noise: noise alone shows three u in two of a hundred."""
     worse = []
     for file in reference_and_corners(gear_set, np.zeros(4), 0.5 * UM, range(40)):
-        found = evaluate_member(file, gear_set.pinion, "pinion")
+        found = evaluate_member(file, gear_set.pinion)
         left_in = not found.registration.is_significant
         assert left_in == any("clamping not taken out: eccentricity" in line for line in found.remarks)
         worse.append(max(found.flanks[k].pitch.total - found.as_measured[k].pitch.total for k in found.flanks))
@@ -323,7 +323,7 @@ def test_pitch_of_a_perfect_pinion_is_not_made_worse_by_a_clamping_that_is_noise
 
 def test_eccentricity_of_20_um_under_noise_is_taken_out_to_99_percent(gear_set):
     (file,) = reference_and_corners(gear_set, np.array([20 * UM, 0, 0, 0]), 0.05 * UM, [0])
-    found = evaluate_member(file, gear_set.pinion, "pinion")
+    found = evaluate_member(file, gear_set.pinion)
     assert found.registration.is_significant
     assert np.hypot(*(found.registration.seat[:2] - [20 * UM, 0])) < 0.01 * 20 * UM
     for flank, judged in found.flanks.items():
@@ -334,9 +334,9 @@ def test_eccentricity_of_20_um_under_noise_is_taken_out_to_99_percent(gear_set):
 def test_no_seat_is_given_that_still_moves(clamped, monkeypatch):
     """Status 1 rather than figures of a clamping that was not found to the end."""
     member = load_bevel_set(bundled("nasa_tp3096_12x36.toml")).pinion
-    file = clamped(member, "pinion", SEAT, around(member), FIVE)
+    file = clamped(member, SEAT, around(member), FIVE)
     monkeypatch.setattr(registration, "_ITERATIONS", 1)
     with pytest.raises(
         ComputationError, match="no clamping of the pinion explains its points: after 1 steps it moves on"
     ):
-        register(file, member, "pinion")
+        register(file, member)

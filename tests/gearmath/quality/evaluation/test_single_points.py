@@ -24,7 +24,7 @@ REFERENCE = (2, 4)
 @pytest.fixture(scope="module")
 def pinion(gear_set):
     """``pinion(seed, cornered, noise)``: perfect, tooth 0 in full, the corners of some teeth and one place of all."""
-    nominal = [nominal_flank(gear_set.pinion, "pinion", each, blank_grid(gear_set.pinion)) for each in FLANKS]
+    nominal = [nominal_flank(gear_set.pinion, each, blank_grid(gear_set.pinion)) for each in FLANKS]
 
     def make(seed=0, cornered=(0, 1, 3, 4, 5, 6, 8, 9, 10), noise=0.2 * UM):
         files = []
@@ -77,7 +77,7 @@ def pitch_errors(seed, size):
 def test_reference_point_that_its_own_corners_deny_is_left_out(gear_set, pinion, size):
     """Tooth 6, its four corners unmoved: no grade is made of it, and the other flank keeps its own."""
     file = pinion()
-    found = evaluate_member(off(file, at(file, "convex", 6), size), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "convex", 6), size), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("convex flank, tooth 6, row 2, col 4: ")
     assert "off the other points of its tooth; left out" in line
@@ -98,7 +98,7 @@ def test_point_off_its_tooth_is_found_among_uneven_teeth(pinion, place):
 @pytest.mark.parametrize("size", [0.006, 0.012, -0.012])
 def test_reference_point_of_a_grid_that_is_off_does_not_zero_it(gear_set, pinion, size):
     file = pinion()
-    found = evaluate_member(off(file, at(file, "concave", 0), size), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "concave", 0), size), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("concave flank, tooth 0, row 2, col 4: ")
     assert line.endswith("and the tooth would be zeroed and indexed by it; left out")
@@ -108,7 +108,7 @@ def test_reference_point_of_a_grid_that_is_off_does_not_zero_it(gear_set, pinion
 
 def test_other_point_of_a_grid_that_is_off_a_little_is_said_and_kept(gear_set, pinion):
     file = pinion()
-    found = evaluate_member(off(file, at(file, "convex", 0, (3, 6)), 0.005), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "convex", 0, (3, 6)), 0.005), gear_set.pinion)
     assert found.left_out == ()
     (line,) = (each for each in found.remarks if "row 3, col 6" in each)
     assert "um off the surface of fourth degree through the others; kept" in line
@@ -118,7 +118,7 @@ def test_other_point_of_a_grid_that_is_off_a_little_is_said_and_kept(gear_set, p
 def test_what_two_teeth_have_at_their_reference_point_is_form(gear_set):
     """Two teeth in full, the same place 8 um high on both: the cutter did that, and the point is kept."""
     grid = blank_grid(gear_set.pinion)
-    one = nominal_flank(gear_set.pinion, "pinion", "convex", grid)
+    one = nominal_flank(gear_set.pinion, "convex", grid)
     change = np.where((one.row == 2) & (one.col == 4), 0.008, 0.0) + 0.2 * UM * np.sin(37.0 * np.arange(45))
     two = join([moved(replace(one, deviation=np.zeros(45), tooth=np.full(45, k)), change) for k in (0, 6)])
     found = find_outliers(two, 12)
@@ -130,12 +130,12 @@ def test_what_two_teeth_have_at_their_reference_point_is_form(gear_set):
 def test_only_point_of_a_flank_that_the_other_flank_does_not_confirm_is_doubtful(gear_set, pinion, size):
     """Tooth 7 has its reference points only."""
     file = pinion()
-    found = evaluate_member(off(file, at(file, "convex", 7), size), gear_set.pinion, "pinion")
+    found = evaluate_member(off(file, at(file, "convex", 7), size), gear_set.pinion)
     (line,) = found.left_out
     assert line.startswith("convex flank, tooth 7, row 2, col 4: ")
     assert "no other point of the tooth confirms it" in line
     both = arcs_off(file, {("convex", 7): size, ("concave", 7): size})
-    assert evaluate_member(both, gear_set.pinion, "pinion").left_out == ()
+    assert evaluate_member(both, gear_set.pinion).left_out == ()
 
 
 def none_left_out(file):

@@ -25,7 +25,7 @@ CASES = {"between the flanks": (45, 20), "convex grid": (67, 20), "concave grid"
 @pytest.fixture(scope="module")
 def part(gear_set):
     """``part(again)``: nominal points of a pinion: tooth 0 in full, others at the middle, tooth 0 again at the end."""
-    nominal = {flank: nominal_flank(gear_set.pinion, "pinion", flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
+    nominal = {flank: nominal_flank(gear_set.pinion, flank, blank_grid(gear_set.pinion)) for flank in FLANKS}
 
     def make(again=CORNERS):
         parts = []
@@ -98,7 +98,7 @@ def test_slip_between_the_flanks_of_the_tooth_in_full_is_told_from_one_after_it(
 
 def test_slip_between_later_teeth_leaves_thickness_and_topography(part, gear_set):
     file = part[CORNERS]
-    found = evaluate_member(measured(file, noise(file, 3), slip(file, 104, 40)), gear_set.pinion, "pinion")
+    found = evaluate_member(measured(file, noise(file, 3), slip(file, 104, 40)), gear_set.pinion)
     assert found.closing.kind == "step"
     assert found.thickness is not None
     found.closing.check_topography()
@@ -107,7 +107,7 @@ def test_slip_between_later_teeth_leaves_thickness_and_topography(part, gear_set
 @pytest.mark.parametrize("case", CASES)
 def test_slip_in_the_tooth_in_full_withholds_all_that_depends_on_it(part, gear_set, case):
     file = part[CORNERS]
-    found = evaluate_member(measured(file, noise(file, 1), slip(file, *CASES[case])), gear_set.pinion, "pinion")
+    found = evaluate_member(measured(file, noise(file, 1), slip(file, *CASES[case])), gear_set.pinion)
     values = found.as_dict()
     assert values["closing"]["slip"]["after"]["tooth"] == 0
     assert "slipped by" in found.first[0]

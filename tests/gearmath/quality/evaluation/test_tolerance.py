@@ -62,7 +62,7 @@ def test_module_and_diameter_of_the_nasa_pair(gear_set):
         ),
     ):
         member = gear_set.member(name)
-        data = gear_data(member, name)
+        data = gear_data(member)
         assert math.degrees(data.mean_spiral_angle) == pytest.approx(sum(angles) / 2, abs=1e-3)
         modules = [pitch_diameter * math.cos(math.radians(angle)) / member.teeth for angle in angles]
         assert data.mean_normal_module == pytest.approx(sum(modules) / 2, rel=2e-5)
@@ -74,14 +74,14 @@ def test_module_and_diameter_of_the_nasa_pair(gear_set):
 def test_grades_are_the_finest_that_hold_the_figure(gear_set):
     """The worst of the three counts, and a figure beyond grade 11 has none."""
     member = gear_set.gear
-    data = gear_data(member, "gear")
+    data = gear_data(member)
     sixth = iso17485(data.mean_normal_module, data.tolerance_diameter, 6).rounded
-    verdict = judge(member, "gear", {"f_pt": sixth["f_pt"] / 1000, "F_p": (sixth["F_p"] + 0.1) / 1000, "F_r": 0.001})
+    verdict = judge(member, {"f_pt": sixth["f_pt"] / 1000, "F_p": (sixth["F_p"] + 0.1) / 1000, "F_r": 0.001})
     assert verdict.grades == {"f_pt": 6, "F_p": 7, "F_r": 2}
     assert verdict.grade == 7
     assert "unconfirmed" in verdict.as_dict()["remark"]
     assert "no conformity" in verdict.as_dict()["remark"]
-    beyond = judge(member, "gear", {"f_pt": 1.0, "F_p": 0.01})
+    beyond = judge(member, {"f_pt": 1.0, "F_p": 0.01})
     assert (beyond.grade, beyond.grades["f_pt"]) == (None, None)
 
 
@@ -90,7 +90,7 @@ def test_no_grade_outside_of_the_scope(gear_set):
     assert GearData(12, 0.9, 100, 0.6).outside == "mean_normal_module = 0.9: the formulas hold from 1 to 50"
     assert GearData(12, 4, 2600, 0.6).outside == "tolerance_diameter = 2600: the formulas hold from 5 to 2500"
     small = gear_set.pinion.model_copy(update={"teeth": 4})
-    verdict = judge(small, "pinion", {"f_pt": 0.001})
+    verdict = judge(small, {"f_pt": 0.001})
     assert (verdict.grade, verdict.grades) == (None, {})
     assert verdict.remark.startswith("no grade: teeth = 4")
 
@@ -99,5 +99,5 @@ def test_no_grade_outside_of_the_scope(gear_set):
 def test_every_bundled_set_has_a_module(title):
     """The crown gear gives 35° at the mean point; m_mn is the same for both members of a pair."""
     pair = load_bevel_set(bundled(f"{title}.toml"))
-    one, other = (gear_data(pair.member(name), name) for name in ("pinion", "gear"))
+    one, other = (gear_data(pair.member(name)) for name in ("pinion", "gear"))
     assert one.mean_normal_module == pytest.approx(other.mean_normal_module, rel=0.01)

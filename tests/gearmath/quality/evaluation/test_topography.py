@@ -92,7 +92,7 @@ def test_local_coordinates_lie_in_the_tangent_of_a_real_flank(gear_set):
     """The reference point is the origin; its row runs along X, its column up Y; lengths are those of the flank."""
     from gearmath.bevel.flank import blank_grid, solve_flank
 
-    points = solve_flank(gear_set.gear, "gear", "concave", blank_grid(gear_set.gear))
+    points = solve_flank(gear_set.gear, "concave", blank_grid(gear_set.gear))
     grid = points.point.reshape(5, 9, 3)
     along, up = local_coordinates(grid, (2, 4))
     assert (along[2, 4], up[2, 4]) == (0, 0)
@@ -136,7 +136,7 @@ def test_grid_that_is_no_grid_is_refused(plane, text):
 
 def test_header_of_a_member_names_its_grid(gear_set):
 
-    header = flank_header(gear_set.pinion, "pinion", (7, 11), 0.05)
+    header = flank_header(gear_set.pinion, (7, 11), 0.05)
     assert (header["grid"], header["reference_point"], header["margins"]) == ("7x11", "3,5", "0.05,0.05")
 
 

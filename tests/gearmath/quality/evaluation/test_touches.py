@@ -35,12 +35,12 @@ def measured(gear_set, tmp_path, member, machine=MACHINE, probe=PROBE, stock=Non
     """Program text, read back and run against the member, its result file read and evaluated."""
     spec = gear_set.member(member)
     text = probing_program(gear_set, member, machine, probe, "PROBE", **options)
-    there = ProbeMachine(spec, member, machine, probe, *([stock] if stock else []))
+    there = ProbeMachine(spec, machine, probe, *([stock] if stock else []))
     done = run_program(text, "PROBE.MPF", there)
     assert done.alarm is None
     file = tmp_path / "raw.csv"
     file.write_text(done.files["PROBE_T"])
-    return measured_member(read_touch_csv(file), spec, member, machine, probe)
+    return measured_member(read_touch_csv(file), spec, machine, probe)
 
 
 @pytest.mark.parametrize("member", MEMBERS)
@@ -52,7 +52,7 @@ def test_probing_the_nominal_member_gives_back_exactly_its_flanks(gear_set, tmp_
     assert len(file) == 2 * (45 + spec.teeth - 1 + 5)  # tooth 0 again at the end, as tooth z
     assert np.abs(file.deviation).max() <= 1e-5  # mm
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
+        nominal = solve_flank(spec, flank, blank_grid(spec))
         for tooth in range(spec.teeth + 1):
             turn = 2 * math.pi * tooth / spec.teeth
             c, s = math.cos(turn), math.sin(turn)
@@ -71,12 +71,12 @@ def test_corners_on_eight_teeth_around_tell_how_the_work_sits(gear_set, tmp_path
     assert around == [0, 2, 3, 4, 6, 8, 9, 10]
     file = measured(gear_set, tmp_path, "pinion", around=around)
     assert len(file) == 2 * (45 + 11 + 7 * 4 + 5)
-    seat = evaluate_member(file, spec, "pinion").registration
+    seat = evaluate_member(file, spec).registration
     assert seat.tilt_found
     assert seat.eccentricity < 1e-5  # mm
     assert seat.tilt * spec.blank.mean_cone_distance < 1e-5
     middle = (file.row == 2) & (file.col == 4)
-    lacking = evaluate_member(file.pick((file.tooth % 12 == 0) | middle), spec, "pinion").registration
+    lacking = evaluate_member(file.pick((file.tooth % 12 == 0) | middle), spec).registration
     assert not lacking.tilt_found
 
 
@@ -104,9 +104,9 @@ def test_wrong_tip_radius_shifts_every_deviation_by_its_error(gear_set, tmp_path
     text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", pitch=False)
     spec = gear_set.member("gear")
     file = tmp_path / "raw.csv"
-    file.write_text(run_program(text, "P", ProbeMachine(spec, "gear", MACHINE, PROBE)).files["PROBE_T"])
+    file.write_text(run_program(text, "P", ProbeMachine(spec, MACHINE, PROBE)).files["PROBE_T"])
     smaller = PROBE.model_copy(update={"tip_radius": 0.74})
-    result = measured_member(read_touch_csv(file), spec, "gear", MACHINE, smaller)
+    result = measured_member(read_touch_csv(file), spec, MACHINE, smaller)
     np.testing.assert_allclose(result.deviation, 0.01, rtol=0, atol=1e-5)
     assert result.header["tip_radius_mm"] == "0.74"
 
@@ -115,17 +115,17 @@ def test_touches_of_another_member_or_set_up_are_refused(gear_set, tmp_path):
     text = probing_program(gear_set, "gear", MACHINE, PROBE, "PROBE", topography=(), pitch=True)
     spec = gear_set.member("gear")
     file = tmp_path / "raw.csv"
-    file.write_text(run_program(text, "P", ProbeMachine(spec, "gear", MACHINE, PROBE)).files["PROBE_T"])
+    file.write_text(run_program(text, "P", ProbeMachine(spec, MACHINE, PROBE)).files["PROBE_T"])
     touches = read_touch_csv(file)
     with pytest.raises(InputError, match="the touches are of the gear, not of the pinion"):
-        measured_member(touches, gear_set.member("pinion"), "pinion", MACHINE, PROBE)
+        measured_member(touches, gear_set.member("pinion"), MACHINE, PROBE)
     longer = PROBE.model_copy(update={"length": 210.0})
     with pytest.raises(InputError, match=r"concave flank, tooth 0, row 2, col 4: the touch lies 10\.0.. mm from"):
-        measured_member(touches, spec, "gear", MACHINE, longer)
+        measured_member(touches, spec, MACHINE, longer)
     for key, value in (("row", 5), ("col", 9), ("tooth", 37)):
         wrong = replace(touches, **{key: np.full(len(touches), value)})
         with pytest.raises(InputError, match=f"{key} = {value}"):
-            measured_member(wrong, spec, "gear", MACHINE, PROBE)
+            measured_member(wrong, spec, MACHINE, PROBE)
 
 
 def test_lobes_of_the_probe_are_taken_off_by_the_direction_of_the_touch(gear_set, tmp_path):
@@ -133,12 +133,12 @@ def test_lobes_of_the_probe_are_taken_off_by_the_direction_of_the_touch(gear_set
     spec = gear_set.member("pinion")
     text = probing_program(gear_set, "pinion", MACHINE, PROBE, "PROBE", topography=())
     lobes = SimulatedMachine(title="lobes", seed=1, probe=Probe(lobing_um=3.0, lobing_phase=20.0))
-    there = ErringProbe(ProbeMachine(spec, "pinion", MACHINE, PROBE), lobes)
+    there = ErringProbe(ProbeMachine(spec, MACHINE, PROBE), lobes)
     file = tmp_path / "raw.csv"
     file.write_text(run_program(text, "PROBE.MPF", there).files["PROBE_T"])
     touches = read_touch_csv(file)
     known = PROBE.model_copy(update={"lobing_um": 3.0, "lobing_phase": 20.0})
-    right, wrong = (measured_member(touches, spec, "pinion", MACHINE, probe) for probe in (known, PROBE))
+    right, wrong = (measured_member(touches, spec, MACHINE, probe) for probe in (known, PROBE))
     np.testing.assert_allclose(right.deviation, 0.0, rtol=0, atol=1e-5)
     assert 1e-3 < np.abs(wrong.deviation).max() <= 3.01e-3
 
@@ -161,7 +161,7 @@ def test_commands_go_from_calibration_to_measured_flank(gear_set, tmp_path, comm
         "nc", "probe", bundled("nasa_tp3096_12x36.toml"), "--member", "pinion", *machine, "-o", tmp_path / "PP.MPF"
     )
     assert (status, out.split(": ")[1].split(",")[0]) == (0, "178 touches")
-    there = ProbeMachine(gear_set.member("pinion"), "pinion", MACHINE, BENT)
+    there = ProbeMachine(gear_set.member("pinion"), MACHINE, BENT)
     raw.write_text(run_program((tmp_path / "PP.MPF").read_text(), "PP", there).files["PP_T"])
     status, out, _ = command("touches", raw, "--set", "nasa_tp3096_12x36.toml", *machine, "-o", tmp_path / "M.csv")
     assert status == 0

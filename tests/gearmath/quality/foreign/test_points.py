@@ -53,8 +53,8 @@ def smooth(count=45):
     return 0.02 * np.sin((col - 4) / 3) + 0.01 * (row - 2) - 0.004 * ((row - 2) * (col - 4) / 4) ** 2
 
 
-def on_flank(member, name, flank, deviation, grid=None):
-    points = solve_flank(member, name, flank, places(member) if grid is None else grid)
+def on_flank(member, flank, deviation, grid=None):
+    points = solve_flank(member, flank, places(member) if grid is None else grid)
     return points.point + deviation[:, None] * points.normal, points.normal
 
 
@@ -69,7 +69,7 @@ def test_deviations_come_back_from_shuffled_turned_points_of_every_set(bundle, n
     gear_set, rng = load_bevel_set(bundled(bundle)), np.random.default_rng(5)
     member = gear_set.member(name)
     for flank in FLANKS:
-        point, normal = on_flank(member, name, flank, smooth())
+        point, normal = on_flank(member, flank, smooth())
         order = rng.permutation(45)
         # the work axis of the file is -y: z_w = -y, and x y z keep their order; the origin lies 30 mm behind the apex
         file = around(point, 2.5)[order] - [0, 0, 30.0]
@@ -97,7 +97,7 @@ def test_thickness_and_pitch_stay_where_all_files_share_one_rotation(gear_set):
     """Both flanks 5 µm too thick, tooth 3 shifted by 20 µm of arc on both: only the rotation of the whole goes."""
     member, parts, shifts = gear_set.gear, [], {}
     for flank in FLANKS:
-        points = solve_flank(member, "gear", flank, places(member))
+        points = solve_flank(member, flank, places(member))
         for tooth in (0, 3):
             deviation = np.full(45, 0.005)
             extra = 0.020 / np.hypot(*points.point[MIDDLE, :2]) if tooth == 3 else 0.0
@@ -119,7 +119,7 @@ def test_thickness_and_pitch_stay_where_all_files_share_one_rotation(gear_set):
 
 
 def test_rotation_is_kept_on_request(gear_set):
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth() + 0.007)
+    point, _ = on_flank(gear_set.pinion, "concave", smooth() + 0.007)
     found = foreign_file([PointPart("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion", "kept")
     assert found.file.header["phase_zeroed"] == "false"
     np.testing.assert_allclose(deviations(found.file, "concave"), smooth() + 0.007, rtol=0, atol=1e-9)
@@ -133,28 +133,28 @@ def test_rotation_is_kept_on_request(gear_set):
 def test_a_burr_is_kept_for_the_evaluation_and_moves_no_other_point(gear_set, burr):
     deviation = smooth()
     deviation[burr] += 0.5
-    point, _ = on_flank(gear_set.pinion, "pinion", "convex", deviation)
+    point, _ = on_flank(gear_set.pinion, "convex", deviation)
     found = foreign_file([PointPart("p.txt", "convex", 0, around(point, -2))], Frame(), gear_set, "pinion")
     others = np.arange(45) != burr
     # where the reference point itself is bad, the smooth surface through the others stands for it
     np.testing.assert_allclose(deviations(found.file, "convex")[others], smooth()[others], rtol=0, atol=1e-3)
-    judged = evaluate_member(found.file, gear_set.pinion, "pinion")
+    judged = evaluate_member(found.file, gear_set.pinion)
     assert any(f"row {burr // 9}, col {burr % 9}" in remark and "left out" in remark for remark in judged.remarks)
 
 
 def test_points_far_off_are_left_out_and_counted(gear_set):
-    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, normal = on_flank(gear_set.pinion, "concave", smooth())
     point[0] += 40 * normal[0]
     found = foreign_file([PointPart("p.txt", "concave", 0, point)], Frame(), gear_set, "pinion")
     assert "p.txt: 1 point beyond the flank or far off it, left out" in found.remarks
     assert len(found.file) == 44
-    judged = evaluate_member(found.file, gear_set.pinion, "pinion")
+    judged = evaluate_member(found.file, gear_set.pinion)
     assert any("row 0, col 0: not measured" in remark for remark in judged.remarks)
     assert judged.flanks["concave"].topographies[0].extreme == pytest.approx(smooth()[1], abs=1e-6)
 
 
 def test_centers_of_the_tip_are_brought_back_by_its_radius(gear_set):
-    point, normal = on_flank(gear_set.gear, "gear", "convex", smooth())
+    point, normal = on_flank(gear_set.gear, "convex", smooth())
     found = foreign_file(
         [PointPart("p.txt", "convex", 0, around(point + 1.5 * normal, 0.3))], Frame("+z", 0.0, 1.5), gear_set, "gear"
     )
@@ -179,7 +179,7 @@ def test_scattered_points_are_brought_onto_a_grid_between_them(gear_set):
 
     deviation = form(across, up)
     deviation[[7, 70, 170]] += 0.4
-    point, _ = on_flank(member, "gear", "concave", deviation, spread)
+    point, _ = on_flank(member, "concave", deviation, spread)
     found = foreign_file([PointPart("p.txt", "concave", 0, around(point, 1))], Frame(), gear_set, "gear")
     assert any("300 points form no grid" in remark for remark in found.remarks)
     assert any("3 points left out, off the others" in remark for remark in found.remarks)
@@ -188,14 +188,14 @@ def test_scattered_points_are_brought_onto_a_grid_between_them(gear_set):
     # a rotation of the work adds what its lever adds, nearly the same all over the flank; rest: 0.2 um
     left = deviations(found.file, "concave") - (form(x, y) - form(0.5, 0.5))
     assert np.abs(left).max() < 2e-4
-    assert evaluate_member(found.file, member, "gear").flanks["concave"].orders.residual < 2e-3
+    assert evaluate_member(found.file, member).flanks["concave"].orders.residual < 2e-3
 
 
 def test_evaluate_judges_points_at_their_own_places(gear_set, command, tmp_path):
     """Text in inches with decimal commas, work axis -x, in; the largest deviation of either flank out."""
     options = []
     for flank in FLANKS:
-        point, _ = on_flank(gear_set.pinion, "pinion", flank, smooth())
+        point, _ = on_flank(gear_set.pinion, flank, smooth())
         z_on_x = around(point, 0.4) @ np.array([[0, 1, 0], [0, 0, -1], [-1, 0, 0]])
         lines = [";".join(f"{v / 25.4:.9f}".replace(".", ",") for v in row) for row in z_on_x[::-1]]
         (tmp_path / f"{flank}.txt").write_text("X;Y;Z\n" + "\n".join(lines) + "\n")
@@ -229,12 +229,10 @@ def test_thickness_of_foreign_points_is_that_at_one_place_of_both_flanks(gear_se
         there = Grid(
             grid.axial + shift, grid.radial + 0.01 * np.sign(shift) + 1e-3 * np.sin(np.arange(45)).reshape(5, 9)
         )
-        parts.append(
-            PointPart(f"{flank}.txt", flank, 0, on_flank(gear_set.gear, "gear", flank, np.zeros(45), there)[0])
-        )
+        parts.append(PointPart(f"{flank}.txt", flank, 0, on_flank(gear_set.gear, flank, np.zeros(45), there)[0]))
     found = foreign_file(parts, Frame(), gear_set, "gear")
     assert found.file.header["margins"] == "own"
-    thickness = evaluate_member(found.file, gear_set.gear, "gear").thickness
+    thickness = evaluate_member(found.file, gear_set.gear).thickness
     radius = grid.radial.ravel()[MIDDLE] + 1e-3 * np.sin(MIDDLE)
     assert thickness.radius == pytest.approx(radius, abs=1e-7)
     assert thickness.arc == pytest.approx(tooth_thickness(gear_set.gear, grid.axial.ravel()[MIDDLE], radius), abs=1e-7)
@@ -243,12 +241,12 @@ def test_thickness_of_foreign_points_is_that_at_one_place_of_both_flanks(gear_se
 def test_a_machine_error_is_corrected_from_foreign_points(gear_set, altered):
     """Cut with the cutter 0.05 mm too far out: points on that very flank ask for a radial distance 0.05 mm less."""
     cut = altered(gear_set, "pinion", "concave", radial_distance=gear_set.pinion.concave.radial_distance + 0.05)
-    points = solve_flank(cut.pinion, "pinion", "concave", places(gear_set.pinion)).point
+    points = solve_flank(cut.pinion, "concave", places(gear_set.pinion)).point
     parts = [PointPart("p.txt", "concave", 0, around(points, 3)[::-1])]
-    whole = solve_flank(gear_set.pinion, "pinion", "convex", places(gear_set.pinion)).point
+    whole = solve_flank(gear_set.pinion, "convex", places(gear_set.pinion)).point
     parts.append(PointPart("q.txt", "convex", 0, around(whole, 3)))
     file = foreign_file(parts, Frame(), gear_set, "pinion", "each").file
-    found = correct(gear_set.pinion, "pinion", file, ("radial_distance", "work_rotation_offset"))
+    found = correct(gear_set.pinion, file, ("radial_distance", "work_rotation_offset"))
     change = found.settings["concave"][0] - gear_set.pinion.concave.radial_distance
     assert change == pytest.approx(-0.05, abs=5e-4)
     assert found.expected["concave"] < 5e-4
@@ -261,10 +259,10 @@ def refusal(gear_set, part, frame=PLAIN, name="pinion"):
 
 
 def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
-    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, normal = on_flank(gear_set.pinion, "concave", smooth())
     part = PointPart("p.txt", "concave", 0, around(point, 1.0))
     assert "p.txt: " in refusal(gear_set, replace(part, flank="convex"))
-    exact, _ = on_flank(gear_set.pinion, "pinion", "convex", np.zeros(45))
+    exact, _ = on_flank(gear_set.pinion, "convex", np.zeros(45))
     exact = PointPart("p.txt", "convex", 0, around(exact, 1.0))  # a slope of the deviations is some 0.5 mm of offset
     cases = {
         "most would fit with --flank concave": (replace(part, flank="convex"), Frame(), "pinion"),
@@ -289,7 +287,7 @@ def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
     }
     for words, case in cases.items():
         assert words in refusal(gear_set, *case), words
-    other, _ = on_flank(gear_set.pinion, "pinion", "convex", smooth())
+    other, _ = on_flank(gear_set.pinion, "convex", smooth())
     both = replace(part, point=np.concatenate([other, point]))
     assert "it holds the points of both flanks" in refusal(gear_set, both)
     turned_normals = replace(part, normal=around(normal, 1.0)[:, [1, 2, 0]])
@@ -297,14 +295,14 @@ def test_points_of_something_else_are_refused_with_what_would_fit(gear_set):
 
 
 def test_a_flank_of_another_tooth_is_named_with_its_tooth(gear_set):
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, _ = on_flank(gear_set.pinion, "concave", smooth())
     parts = [PointPart(f"{k}.txt", "concave", k, around(point, -2 * np.pi * k / 12)) for k in (0, 1)]
     with pytest.raises(InputError, match=r"1\.txt: .* it would be of tooth 11, counted as the set counts"):
         foreign_file(parts, Frame(), gear_set, "pinion")
 
 
 def test_half_a_file_is_told_from_a_whole_one(gear_set):
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, _ = on_flank(gear_set.pinion, "concave", smooth())
     found = foreign_file([PointPart("p.txt", "concave", 0, point[:22])], Frame(), gear_set, "pinion")
     (covered,) = (each for each in found.remarks if "% only: is the file whole?" in each)
     assert "cover the working depth from 1" in covered
@@ -315,7 +313,7 @@ def test_half_a_file_is_told_from_a_whole_one(gear_set):
 @pytest.mark.parametrize("row", [2, 0])
 def test_too_few_points_for_a_grid_are_refused(gear_set, row):
     """The lowest row, too, which a trial of another cause may move off the flank altogether."""
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, _ = on_flank(gear_set.pinion, "concave", smooth())
     point = point[9 * row : 9 * row + 9] + np.array([0.05, 0.0, 0.0])
     assert "its 9 points form no grid, and cover too little" in refusal(
         gear_set, PointPart("p.txt", "concave", 0, point)
@@ -371,7 +369,7 @@ def test_two_files_of_one_flank_are_refused(refused, tmp_path):
 def test_a_set_without_the_mate_gives_the_same_hints(gear_set):
     """The likely cause is sought among the members that there are."""
     alone = gear_set.model_copy(update={"gear": None})
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, _ = on_flank(gear_set.pinion, "concave", smooth())
     part = PointPart("p.txt", "concave", 0, around(point, 1.0))
     assert "most would fit with --unit inch" in refusal(alone, replace(part, point=part.point / 25.4))
     assert "most would fit with --flank concave" in refusal(alone, replace(part, flank="convex"))
@@ -381,7 +379,7 @@ def test_a_set_without_the_mate_gives_the_same_hints(gear_set):
 @pytest.mark.parametrize("count", [5, 8, 9, 10, 13, 25])
 def test_a_few_points_of_one_end_are_a_file_or_one_sentence(gear_set, count):
     """A row or a little more: the reference point lies beyond them, and nothing is said of it."""
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, _ = on_flank(gear_set.pinion, "concave", smooth())
     part = PointPart("p.txt", "concave", 0, around(point[:count], 1.0))
     try:
         file = foreign_file([part], Frame(), gear_set, "pinion", "each").file
@@ -390,11 +388,10 @@ def test_a_few_points_of_one_end_are_a_file_or_one_sentence(gear_set, count):
     assert np.abs(file.deviation).max() < 0.05
 
 
-def both_flanks(member, name, moved=lambda point: point, tip=0.0, flanks=FLANKS):
+def both_flanks(member, moved=lambda point: point, tip=0.0, flanks=FLANKS):
     """Parts whose points, or centers of the tip, were moved; a third of the form of smooth()."""
     return [
-        PointPart(f"{flank}.txt", flank, 0, moved(on_flank(member, name, flank, smooth() / 3 + tip)[0]))
-        for flank in flanks
+        PointPart(f"{flank}.txt", flank, 0, moved(on_flank(member, flank, smooth() / 3 + tip)[0])) for flank in flanks
     ]
 
 
@@ -405,13 +402,13 @@ def tilted(degrees):
 
 @pytest.mark.parametrize("name", MEMBERS)
 def test_points_that_stand_right_raise_no_doubt(gear_set, name):
-    parts = both_flanks(gear_set.member(name), name, lambda point: around(point, 1.0))
+    parts = both_flanks(gear_set.member(name), lambda point: around(point, 1.0))
     assert foreign_file(parts, PLAIN, gear_set, name).doubts == ()
 
 
 @pytest.mark.parametrize("name", MEMBERS)
 def test_centers_of_the_tip_without_its_radius_are_refused_with_it(gear_set, name):
-    parts = both_flanks(gear_set.member(name), name, tip=1.0)
+    parts = both_flanks(gear_set.member(name), tip=1.0)
     with pytest.raises(
         InputError, match=r"lie 100\d\.\d um RMS off the nominal flank, .* with --tip-radius 1\.00: are"
     ):
@@ -430,12 +427,12 @@ def test_work_that_stands_askew_or_beside_its_axis_is_said_to(gear_set, name):
         (tilted(0.2), r"tilted by (\d\.\d\d) degrees", 0.2),
         (lambda point: point + np.array([0.2, 0.0, 0.0]), r"stands (\d\.\d\d) mm beside the axis", 0.2),
     ):
-        (doubt,) = foreign_file(both_flanks(member, name, moved), PLAIN, gear_set, name).doubts
+        (doubt,) = foreign_file(both_flanks(member, moved), PLAIN, gear_set, name).doubts
         assert float(re.search(words, doubt)[1]) == pytest.approx(size, rel=0.25), doubt
 
 
 def test_doubts_are_said_on_standard_error_and_in_json(command, gear_set, tmp_path):
-    for part in both_flanks(gear_set.pinion, "pinion", tilted(0.2)):
+    for part in both_flanks(gear_set.pinion, tilted(0.2)):
         np.savetxt(tmp_path / part.name, part.point, "%.5f", header="TOOTH 3", comments="")
     files = [tmp_path / "concave.txt", "--flank", "concave", tmp_path / "convex.txt", "--flank", "convex"]
     status, out, err = command(
@@ -457,7 +454,7 @@ def test_doubts_are_said_on_standard_error_and_in_json(command, gear_set, tmp_pa
     ],
 )
 def test_text_that_contradicts_an_option_is_refused(refused, gear_set, tmp_path, head, sentence):
-    (part,) = both_flanks(gear_set.pinion, "pinion", flanks=("concave",))
+    (part,) = both_flanks(gear_set.pinion, flanks=("concave",))
     np.savetxt(tmp_path / "p.txt", part.point, "%.5f", header=head, comments="")
     refused(
         rf"p\.txt, {sentence}",
@@ -475,7 +472,7 @@ def test_text_that_contradicts_an_option_is_refused(refused, gear_set, tmp_path,
 
 
 def test_one_point_is_refused(gear_set):
-    (part,) = both_flanks(gear_set.pinion, "pinion", flanks=("concave",))
+    (part,) = both_flanks(gear_set.pinion, flanks=("concave",))
     assert refusal(gear_set, replace(part, point=part.point[:1])) == "concave.txt: holds 1 point, at least 6 are needed"
 
 
@@ -490,8 +487,8 @@ def written(tmp_path, parts):
 
 def test_single_point_far_out_is_refused_with_its_line_and_left_out_on_request(command, gear_set, tmp_path):
     """3 mm on one flank, in line 19; 30 um are said, and are for the evaluation to judge."""
-    one, other = both_flanks(gear_set.pinion, "pinion")
-    _, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    one, other = both_flanks(gear_set.pinion)
+    _, normal = on_flank(gear_set.pinion, "concave", smooth())
     for size, refused_ in ((3.0, True), (0.03, False)):
         point = one.point.copy()
         point[17] += size * normal[17]
@@ -511,7 +508,7 @@ def test_single_point_far_out_is_refused_with_its_line_and_left_out_on_request(c
 
 @pytest.mark.parametrize("count", [44, 40, 27])
 def test_file_cut_at_the_end_of_a_row_is_refused_unless_asked_for(command, gear_set, tmp_path, count):
-    one, other = both_flanks(gear_set.pinion, "pinion")
+    one, other = both_flanks(gear_set.pinion)
     arguments = written(tmp_path, [replace(one, point=one.point[:count]), replace(other, point=other.point[:count])])
     status, _, err = command(*arguments)
     assert (status, err.count("\n")) == (2, 1)
@@ -537,7 +534,7 @@ UP = np.array([0.0, 0.0, 1.0])
 )
 def test_scale_and_apex_are_named_by_size_where_both_flanks_show_them(gear_set, moved, words):
     """Beside the others that the form of the flanks, 6 um RMS, does not tell from them."""
-    (doubt,) = foreign_file(both_flanks(gear_set.pinion, "pinion", moved), PLAIN, gear_set, "pinion").doubts
+    (doubt,) = foreign_file(both_flanks(gear_set.pinion, moved), PLAIN, gear_set, "pinion").doubts
     assert re.search(words, doubt), doubt
 
 
@@ -550,7 +547,7 @@ def test_a_scale_is_told_from_form_where_both_flanks_ask_for_it(gear_set, scale)
     said = []
     for factor in (scale, 1.0):
         parts = [
-            PointPart(f"{flank}.txt", flank, 0, factor * on_flank(gear_set.pinion, "pinion", flank, form)[0])
+            PointPart(f"{flank}.txt", flank, 0, factor * on_flank(gear_set.pinion, flank, form)[0])
             for flank, form in zip(FLANKS, forms, strict=True)
         ]
         said.append(foreign_file(parts, PLAIN, gear_set, "pinion").doubts)
@@ -568,7 +565,7 @@ def test_single_point_off_by_twelve_times_the_noise_is_named_and_kept(gear_set, 
     for flank in FLANKS:
         deviation = smooth() / 4 + 5e-4 * rng.standard_normal(45)
         deviation[k] += 0.006 * (flank == "convex")
-        parts.append(PointPart(f"{flank}.txt", flank, 0, on_flank(gear_set.pinion, "pinion", flank, deviation)[0]))
+        parts.append(PointPart(f"{flank}.txt", flank, 0, on_flank(gear_set.pinion, flank, deviation)[0]))
     found = foreign_file(parts, PLAIN, gear_set, "pinion")
     (doubt,) = found.doubts
     assert float(re.match(rf"convex\.txt, point {k + 1}: the point is (\d+\.\d) um off", doubt)[1]) > 4
@@ -585,7 +582,7 @@ def test_noise_and_waves_name_no_point(gear_set):
                 flank,
                 flank,
                 0,
-                on_flank(gear_set.pinion, "pinion", flank, wave * np.sin(col) + 5e-4 * rng.standard_normal(45))[0],
+                on_flank(gear_set.pinion, flank, wave * np.sin(col) + 5e-4 * rng.standard_normal(45))[0],
             )
             for flank in FLANKS
         ]
@@ -594,20 +591,20 @@ def test_noise_and_waves_name_no_point(gear_set):
 
 def test_points_kept_as_they_stand_are_said_to_be_turned(gear_set):
     """1 degree is 0.3 mm along the normal; what a tooth is indexed or cut wrong, 20 um, is what is kept."""
-    parts = both_flanks(gear_set.pinion, "pinion", lambda point: around(point, np.radians(1.0)))
+    parts = both_flanks(gear_set.pinion, lambda point: around(point, np.radians(1.0)))
     doubts = foreign_file(parts, PLAIN, gear_set, "pinion", "kept").doubts
     words = r"(.*)\.txt: its \1 flank is turned by (\S+) degrees against tooth 0 of the set, .*; --phase common takes"
     said = [re.match(words, doubt) for doubt in doubts]
     assert [one[1] for one in said] == list(FLANKS)
     assert [float(one[2]) for one in said] == pytest.approx([1.0, 1.0], abs=0.01)  # the form of the flanks takes part
-    little = both_flanks(gear_set.pinion, "pinion", lambda point: around(point, 0.02 / 40))
+    little = both_flanks(gear_set.pinion, lambda point: around(point, 0.02 / 40))
     assert not any("kept so" in doubt for doubt in foreign_file(little, PLAIN, gear_set, "pinion", "kept").doubts)
 
 
 @pytest.mark.parametrize("drift", [0.0, 0.03])
 def test_two_runs_in_one_file_are_said_with_what_they_differ_by(gear_set, drift):
     """Two grids one after the other, the second with 0.5 um of noise and moved along the normals."""
-    point, normal = on_flank(gear_set.pinion, "pinion", "concave", smooth() / 4)
+    point, normal = on_flank(gear_set.pinion, "concave", smooth() / 4)
     off = drift + 5e-4 * np.random.default_rng(6).standard_normal(45)
     both = np.concatenate([point, point + off[:, None] * normal])
     doubts = foreign_file([PointPart("c.txt", "concave", 0, both)], PLAIN, gear_set, "pinion").doubts
@@ -617,7 +614,7 @@ def test_two_runs_in_one_file_are_said_with_what_they_differ_by(gear_set, drift)
 
 
 def test_grids_of_unlike_size_are_said_to_be(gear_set):
-    one, other = both_flanks(gear_set.pinion, "pinion")
+    one, other = both_flanks(gear_set.pinion)
     less = replace(one, point=one.point.reshape(5, 9, 3)[:, 1:].reshape(-1, 3))
     doubts = foreign_file([less, other], PLAIN, gear_set, "pinion").doubts
     assert "concave.txt holds a grid of 5x8, convex.txt one of 5x9: are both whole?" in doubts
@@ -627,7 +624,7 @@ def test_grids_of_unlike_size_are_said_to_be(gear_set):
     ("digits", "said"), [(2, "p.txt: x, y, z are rounded to 10 um: no point is known better"), (4, "")]
 )
 def test_points_printed_to_too_few_digits_are_said_to_be(gear_set, digits, said):
-    point, _ = on_flank(gear_set.pinion, "pinion", "concave", smooth())
+    point, _ = on_flank(gear_set.pinion, "concave", smooth())
     found = foreign_file([PointPart("p.txt", "concave", 0, np.round(point, digits))], Frame(), gear_set, "pinion")
     assert any("rounded" in doubt for doubt in found.doubts) == bool(said)
     assert not said or found.doubts[0].startswith(said)

@@ -39,12 +39,12 @@ def measured(gear_set, mill, shop) -> FlankFile:
 def model(gear_set, measured, vertical) -> Covariance:
     """How well the bundled machine and probe measure it."""
     how, probe = load_measurement(bundled("measurement.toml")), load_calibration(bundled("probe.toml"))
-    return touch_covariance(measured, gear_set.pinion, "pinion", how, vertical, probe)
+    return touch_covariance(measured, gear_set.pinion, how, vertical, probe)
 
 
 @pytest.fixture(scope="module")
 def evaluation(gear_set, measured):
-    return evaluate_member(measured, gear_set.pinion, "pinion")
+    return evaluate_member(measured, gear_set.pinion)
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def found(figures, model):
 def small(gear_set):
     """A perfect concave flank of the pinion: a grid of 3 x 3 on tooth 0, the reference point on the others."""
     grid = blank_grid(gear_set.pinion, 3, 3)
-    files = [nominal_flank(gear_set.pinion, "pinion", "concave", grid, tooth=k) for k in range(12)]
+    files = [nominal_flank(gear_set.pinion, "concave", grid, tooth=k) for k in range(12)]
     file = join([one if k == 0 else one.pick(one.row * 3 + one.col == 4) for k, one in enumerate(files)])
     return replace(file, deviation=np.zeros(len(file)))
 
@@ -70,7 +70,7 @@ def small(gear_set):
 def unregistered(gear_set, file, deviation):
     """The figures of the small pinion with these deviations."""
     file = replace(file, point=file.point + deviation[:, None] * file.normal, deviation=deviation)
-    return figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, "pinion", registered=False))
+    return figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, registered=False))
 
 
 def by_name(found, flank="concave"):
@@ -130,7 +130,7 @@ def test_contenders_are_all_that_can_be_the_largest():
 def dense(gear_set):
     """3 x 5 points on all perfect flanks of the pinion, tooth 0 once more at the end: tilt and drift are told too."""
     grid = blank_grid(gear_set.pinion, 3, 5)
-    files = [nominal_flank(gear_set.pinion, "pinion", flank, grid, tooth=k) for k in range(12) for flank in FLANKS]
+    files = [nominal_flank(gear_set.pinion, flank, grid, tooth=k) for k in range(12) for flank in FLANKS]
     file = join(files + [replace(one, tooth=one.tooth + 12) for one in files[:2]])
     return replace(file, deviation=np.zeros(len(file)))
 
@@ -146,7 +146,7 @@ def test_jacobian_is_the_derivative_of_the_whole_evaluation(gear_set, request, w
 
     def evaluated(change):
         shifted = replace(file, point=file.point + change[:, None] * file.normal, deviation=file.deviation + change)
-        return figures_of(shifted, gear_set.pinion, evaluate_member(shifted, gear_set.pinion, "pinion"))
+        return figures_of(shifted, gear_set.pinion, evaluate_member(shifted, gear_set.pinion))
 
     here = evaluated(0 * step)
     smooth = np.array([item.smooth for item in here.items])
@@ -164,7 +164,7 @@ def test_drift_is_propagated_with_the_points_that_tell_it(gear_set, small):
     file = join([reference, replace(again, tooth=again.tooth + 12)])
     grid = small.pick((small.tooth == 0) & ~((small.row == 1) & (small.col == 1)))
     file = join([file, grid])  # the grid comes last, and has its own share of the drift
-    figures = figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, "pinion", registered=False))
+    figures = figures_of(file, gear_set.pinion, evaluate_member(file, gear_set.pinion, registered=False))
     f_pt_1 = figures.jacobian[[item.name for item in figures.items].index("f_pt_1")]
     point, normal = reference.point[0], reference.normal[0]
     arc = math.hypot(*point[:2]) / (point[0] * normal[1] - point[1] * normal[0])

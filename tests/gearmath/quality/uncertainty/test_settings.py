@@ -29,8 +29,8 @@ SEEDS, ALPHA = 2000, 1e-3
 FREE = ("radial_distance", "cradle_angle", "machine_center_to_crossing_point", "machine_root_angle")
 
 
-def target(spec, member, flank, rows=5, columns=9) -> FlankTarget:
-    nominal = solve_flank(spec, member, flank, blank_grid(spec, rows, columns))
+def target(spec, flank, rows=5, columns=9) -> FlankTarget:
+    nominal = solve_flank(spec, flank, blank_grid(spec, rows, columns))
     along, up = local_coordinates(nominal.point.reshape(rows, columns, 3), (rows // 2, columns // 2))
     return target_of(spec, flank, nominal, np.stack([along.ravel(), up.ravel()], axis=1))
 
@@ -66,7 +66,7 @@ def test_gain_is_the_derivative_of_the_identification(name, member):
     """Both flanks together, the settings that suit the cutting method, weak directions damped by the noise."""
     spec = load_bevel_set(bundled(name)).member(member)
     targets = [
-        measured(target(spec, member, flank), {"radial_distance": 0.02, "machine_root_angle": 1e-4}, seed)
+        measured(target(spec, flank), {"radial_distance": 0.02, "machine_root_angle": 1e-4}, seed)
         for seed, flank in enumerate(FLANKS)
     ]
     free = analyse(targets).choose().names
@@ -88,7 +88,7 @@ def test_gain_is_the_derivative_of_the_identification(name, member):
     ids=["surface", "damped", "all settings, damped", "motions"],
 )
 def test_gain_is_the_derivative_whatever_is_fitted(gear_set, free, how):
-    one = measured(target(gear_set.pinion, "pinion", "concave"), {"radial_distance": 0.02, "sliding_base": 0.01})
+    one = measured(target(gear_set.pinion, "concave"), {"radial_distance": 0.02, "sliding_base": 0.01})
     found = identify([one], free, **how)
     directions = np.random.default_rng(3).standard_normal((3, 45))
     expected = differences([one], free, directions, **how) / found.scale
@@ -98,7 +98,7 @@ def test_gain_is_the_derivative_whatever_is_fitted(gear_set, free, how):
 
 def test_curvature_is_the_difference_to_the_linear_gain(gear_set):
     """With some um that no setting explains, the gain without curvature is off by 0.4 %, the exact one is not."""
-    one = measured(target(gear_set.pinion, "pinion", "concave"), {"radial_distance": 0.02})
+    one = measured(target(gear_set.pinion, "concave"), {"radial_distance": 0.02})
     col = np.indices((5, 9))[1].ravel()
     one = one.plus(0.01 * ((col - 4) / 4.0) ** 4)
     found = identify([one], FREE, noise=NOISE)
@@ -112,7 +112,7 @@ def test_curvature_is_the_difference_to_the_linear_gain(gear_set):
 
 def test_what_a_bound_holds_does_not_move_and_the_others_know_it(gear_set):
     """The root angle is off by more than its bound: it stays there, and the others are those of a fit without it."""
-    one = measured(target(gear_set.pinion, "pinion", "concave"), {"machine_root_angle": 0.03})
+    one = measured(target(gear_set.pinion, "concave"), {"machine_root_angle": 0.03})
     found = identify([one], FREE)
     assert found.active == ("machine_root_angle",)
     gain = exact_gain([one], found)
@@ -127,7 +127,7 @@ def test_what_a_bound_holds_does_not_move_and_the_others_know_it(gear_set):
 
 def test_root_line_at_its_limit_holds_the_settings_too(gear_set):
     """Sunk by more than it may: the fit without the root line is another, and the gain is that of the one with it."""
-    one = measured(target(gear_set.pinion, "pinion", "concave"), {"sliding_base": 0.2})
+    one = measured(target(gear_set.pinion, "concave"), {"sliding_base": 0.2})
     free, limit = ("radial_distance", "cradle_angle", "sliding_base"), 0.05
     found = identify([one], free, root_limit=limit)
     assert found.active == ("root line",)
@@ -140,7 +140,7 @@ def test_root_line_at_its_limit_holds_the_settings_too(gear_set):
 
 def test_settings_that_the_flank_does_not_tell_apart_are_refused(gear_set):
     """Turning the cradle and turning the work do the same to a generated flank, unless noise says not to move them."""
-    one = measured(target(gear_set.pinion, "pinion", "concave"), {"cradle_angle": 1e-4})
+    one = measured(target(gear_set.pinion, "concave"), {"cradle_angle": 1e-4})
     alike = ("cradle_angle", "work_rotation_offset")
     with pytest.raises(ComputationError, match="do not determine the settings"):
         exact_gain([one], identify([one], alike))
@@ -151,7 +151,7 @@ def test_settings_that_the_flank_does_not_tell_apart_are_refused(gear_set):
 def drawn(gear_set):
     """A flank of the pinion on 3 x 5 points, its settings found again in 20 000 draws of the noise."""
     errors = {"radial_distance": 0.03, "machine_root_angle": 2e-4}
-    targets = [measured(target(gear_set.pinion, "pinion", "concave", 3, 5), errors)]
+    targets = [measured(target(gear_set.pinion, "concave", 3, 5), errors)]
     covariance = Covariance(np.full(15, NOISE**2), np.full((15, 1), 0.3e-3), ("probe calibration",))
     found = identify(targets, FREE, noise=NOISE)
     kernel = compensation_kernel(targets, FREE, noise=NOISE, steps=2)
@@ -202,7 +202,7 @@ def test_few_steps_from_the_solution_are_the_whole_identification(drawn):
 @pytest.mark.slow
 def test_95_percent_intervals_of_settings_hold_the_truth(gear_set):
     """Exact binomial tests over 2000 seeds, Bonferroni over the table; the truth is what the flank was cut with."""
-    one = target(gear_set.pinion, "pinion", "concave", 3, 5)
+    one = target(gear_set.pinion, "concave", 3, 5)
     errors = {"radial_distance": 0.03, "machine_root_angle": 2e-4}
     true = np.array([errors.get(name, 0.0) for name in FREE])
     exact = measured(one, errors, noise=0.0)
@@ -220,7 +220,7 @@ def test_rows_of_a_target_are_its_points_in_a_file_of_any_order(gear_set, mill):
     mixed = file.pick(np.random.default_rng(4).permutation(len(file)))
     excluded = (mixed.row == 1) & (mixed.col == 3)
     for flank in FLANKS:
-        one = flank_target(gear_set.pinion, "pinion", flank, mixed, excluded=excluded)
+        one = flank_target(gear_set.pinion, flank, mixed, excluded=excluded)
         rows = rows_of(mixed, flank, one)
         assert len(rows) == 44
         np.testing.assert_array_equal(mixed.deviation[rows], one.deviation)

@@ -30,7 +30,7 @@ def touched(gear_set, vertical):
 
     def make(member: str, shift=lambda axes: 0 * axes) -> FlankFile:
         spec = gear_set.member(member)
-        there = probe_targets(spec, member, vertical, PROBE)
+        there = probe_targets(spec, vertical, PROBE)
         touches = Touches(
             1,
             member,
@@ -41,7 +41,7 @@ def touched(gear_set, vertical):
             there.touch + shift(there.touch),
             np.ones(len(there), dtype=bool),
         )
-        return measured_member(touches, spec, member, vertical, PROBE)
+        return measured_member(touches, spec, vertical, PROBE)
 
     return make
 
@@ -57,7 +57,7 @@ def test_sensitivity_is_what_a_wrong_reading_does(gear_set, vertical, touched, m
 
     high, low = off(1), off(-1)
     for flank in FLANKS:
-        slope = sensitivities(spec, member, flank, blank_grid(spec), vertical, PROBE)[:, axis]
+        slope = sensitivities(spec, flank, blank_grid(spec), vertical, PROBE)[:, axis]
         here = (high.flank == flank) & (high.tooth == 0)
         differences = (high.deviation[here] - low.deviation[here]) / (2 * h)
         np.testing.assert_allclose(-slope[high.row[here] * 9 + high.col[here]], differences, rtol=0, atol=1e-6)
@@ -70,7 +70,7 @@ def test_squareness_acts_from_the_height_of_the_calibration(gear_set, vertical, 
     height = PROBE.sphere.center[2]
     wrong = touched(member, lambda axes: squareness * (axes[:, 2:3] - height) * np.eye(5)[0])
     for flank in FLANKS:
-        slope = sensitivities(spec, member, flank, blank_grid(spec), vertical, PROBE)[:, 4]
+        slope = sensitivities(spec, flank, blank_grid(spec), vertical, PROBE)[:, 4]
         here = wrong.flank == flank
         expected = -squareness * slope[wrong.row[here] * 9 + wrong.col[here]]
         np.testing.assert_allclose(wrong.deviation[here], expected, rtol=0, atol=1e-8)
@@ -81,15 +81,15 @@ def test_growth_is_what_a_larger_flank_leaves(gear_set, vertical, member):
     """The deviation of the points of a work that is larger by 1e-4, along the normals of the one of the drawing."""
     spec = gear_set.member(member)
     for flank in FLANKS:
-        nominal = solve_flank(spec, member, flank, blank_grid(spec))
-        slope = sensitivities(spec, member, flank, blank_grid(spec), vertical, PROBE)[:, 5]
+        nominal = solve_flank(spec, flank, blank_grid(spec))
+        slope = sensitivities(spec, flank, blank_grid(spec), vertical, PROBE)[:, 5]
         grown = np.sum((1e-4 * nominal.point) * nominal.normal, axis=1)
         np.testing.assert_allclose(1e-4 * slope, grown, rtol=0, atol=1e-12)
 
 
 def covariance_of(gear_set, vertical, file, **values):
     how = PERFECT.model_copy(update=values)
-    return touch_covariance(file, gear_set.pinion, "pinion", how, vertical, PROBE)
+    return touch_covariance(file, gear_set.pinion, how, vertical, PROBE)
 
 
 def test_every_source_alone_is_what_it_says(gear_set, vertical, touched):
