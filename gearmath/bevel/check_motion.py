@@ -60,6 +60,8 @@ def _check_still_roll(member: Member, spec: Flank, table: str) -> None:
 
 def _check_carried(member: Member, spec: Flank, table: str) -> None:
     for key, motion in (("motion", spec.motion), ("design.motion", spec.nominal_motion)):
+        if not (motion.matrix.any() or motion.roll.any()):
+            continue
         rows = dict(zip(MACHINE_SETTINGS, motion.matrix, strict=True))
         rows["modified_roll"] = motion_of(spec, key != "motion")[-1] - motion.matrix[-1]
         for name, row in rows.items():

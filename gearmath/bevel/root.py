@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -182,6 +183,7 @@ def _along(blank: Blank) -> tuple[float, float]:
     return math.cos(delta), math.sin(delta)
 
 
+@lru_cache(maxsize=64)
 def _heights(blank: Blank) -> tuple[np.ndarray, np.ndarray]:
     """Cone distances (13,) of the places of a trace, and how high the root of the blank lies there [mm]."""
     along, up = _along(blank)
@@ -192,6 +194,12 @@ def _heights(blank: Blank) -> tuple[np.ndarray, np.ndarray]:
 def _fine(trace: np.ndarray) -> np.ndarray:
     """Many points of a trace between those that are there, by the polynomial through them."""
     found = np.isfinite(trace).all(axis=1)
-    at, degree = ACROSS[found] - 0.5, min(int(found.sum()) - 1, 8)
-    fine = np.linspace(at[0], at[-1], _FINE)
-    return np.vander(fine, degree + 1) @ np.polyfit(at, trace[found], degree)
+    return _interpolation(found.tobytes()) @ trace[found]
+
+
+@cache  # a trace nearly always has all its points
+def _interpolation(found: bytes) -> np.ndarray:
+    """Matrix (241,n) of the polynomial through the n points of a trace that are there, at many points between them."""
+    at = ACROSS[np.frombuffer(found, bool)] - 0.5
+    degree = min(len(at) - 1, 8)
+    return np.vander(np.linspace(at[0], at[-1], _FINE), degree + 1) @ np.polyfit(at, np.eye(len(at)), degree)
