@@ -125,12 +125,21 @@ def meets(points, positions, columns):
 
     Each column has a length below the gauge line and a radius, and goes up from there without end.
     """
-    for x, y, z, _, b in positions:
+    longest, widest = np.max(columns, axis=0)
+    across = points[:, 1]
+    for b in np.unique(positions[:, 4]):
         level = points[:, 0] * math.cos(b) - points[:, 2] * math.sin(b)
         forward = -points[:, 0] * math.sin(b) - points[:, 2] * math.cos(b)
-        aside, above = np.hypot(forward - x, points[:, 1] - y), level - (z - MACHINE.gauge_line_height)
-        if any(((aside < radius) & (above > -length)).any() for length, radius in columns):
-            return True
+        x, y, z = positions[positions[:, 4] == b, :3].T
+        # the columns reach no point where all of the work is below them, or to one side
+        beside = np.maximum(
+            np.abs(x - x.clip(forward.min(), forward.max())), np.abs(y - y.clip(across.min(), across.max()))
+        )
+        near = (level.max() - (z - MACHINE.gauge_line_height) > -longest) & (beside < widest)
+        for at_x, at_y, at_z in zip(x[near], y[near], z[near], strict=True):
+            aside, above = np.hypot(forward - at_x, across - at_y), level - (at_z - MACHINE.gauge_line_height)
+            if any(((aside < radius) & (above > -length)).any() for length, radius in columns):
+                return True
     return False
 
 
@@ -213,7 +222,7 @@ def test_nothing_is_touched_before_the_first_cut_or_the_program_stops(number):
         start = (np.array(setup.position) - setup.zero) * [1, 1, 1, np.pi / 180, np.pi / 180]
         tried += 1
         columns = columns_of(spec, kind, setup.tool_length)
-        if meets(points, [start], columns):
+        if meets(points, start[None], columns):
             continue  # no program can begin in the metal
         begun = {90: int(random.integers(2, 14))} if kind == "again" else {}  # a program that is continued
         run = run_program(text, "START", lambda a, b: None, setup=setup, parameters=begun)
