@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.method import blade_sections, generation_of, nominal_cut
 from gearmath.bevel.root import ENDS, Widths, mean_place, root_trace, root_widths, slot_widths
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
@@ -109,12 +109,11 @@ def tooth_space(
 
 def space_widths(member: Member) -> tuple[Widths, dict[str, Widths]]:
     """Widths of the root of space 0, and slot widths by flank. Raises InputError naming member and flank."""
-    hows = {flank: generation_of(member, flank) for flank in FLANKS}
+    cuts = {flank: nominal_cut(member, flank) for flank in FLANKS}
     starts, traces = {}, {}
-    for flank, how in hows.items():
-        section = blade_sections(member.flank(flank), SIDES[flank])["main"]
-        starts[flank] = solve_section(how, section, *mean_place(member)).contact
-        found = root_trace(member, flank, how, starts[flank])
+    for flank, by in cuts.items():
+        starts[flank] = by.at(*mean_place(member)).contact
+        found = root_trace(member, flank, by.how, starts[flank])
         if not found.converged[ENDS[0] : ENDS[-1] + 1].all():
             raise InputError(
                 f"{member.name} {flank} flank: the tip of the blade does not reach the root from toe to heel"
@@ -122,7 +121,7 @@ def space_widths(member: Member) -> tuple[Widths, dict[str, Widths]]:
         traces[flank] = np.where(found.converged[:, None], found.point, np.nan)
     slots = {}
     for flank, mate in zip(FLANKS, reversed(FLANKS), strict=True):
-        slots[flank] = slot_widths(member, flank, hows[flank], starts[flank], traces[flank], traces[mate])
+        slots[flank] = slot_widths(member, flank, cuts[flank].how, starts[flank], traces[flank], traces[mate])
     return root_widths(member, *traces.values()), slots
 
 
@@ -200,8 +199,7 @@ def tooth_thickness(member: Member, axial: float, radius: float) -> float:
     """Transverse arc [mm] of the tooth at a place on the blank, z_w and radius [mm]: the pitch less the space."""
     angles = []
     for flank in FLANKS:
-        section = blade_sections(member.flank(flank), SIDES[flank])["main"]
-        points = solve_section(generation_of(member, flank), section, np.array([axial]), np.array([radius]))
+        points = nominal_cut(member, flank).at(np.array([axial]), np.array([radius]))
         if not points.converged.all():
             raise InputError(f"{flank} flank: no point at z = {axial:.3f}, radius {radius:.3f} mm")
         angles.append(float(_angle(points.point)[0]))
