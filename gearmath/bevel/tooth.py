@@ -13,14 +13,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of, nominal_cut
+from gearmath.bevel.generation import Section, SurfacePoints, solve_curve
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.root import ENDS, Widths, mean_place, root_trace, root_widths, slot_widths
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.shown import Shown, Shows
-from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+from gearmath.specs.bevel_set import FLANKS, Flank, Member
 
 #: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]
 SHARP_EDGE = 0.02
@@ -129,29 +129,26 @@ def flank_surface(
     member: Member, flank: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
 ) -> SpaceFlank:
     """One flank of space 0 from the face cone to the bottom of its fillet."""
-    spec = member.flank(flank)
-    sharp = sharp_edged(spec)
-    sections = blade_sections(sharp, SIDES[flank])
-    how = generation_of(member, flank)
+    by = nominal_cut(member.model_copy(update={flank: sharp_edged(member.flank(flank))}), flank)
     across = np.linspace(0.0, 1.0, columns)
     delta = member.blank.delta
     direction = (math.cos(delta), math.sin(delta))
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.ones(columns))
     distance = axial * direction[0] + radial * direction[1]
-    tip = solve_section(how, sections["main"], axial, radial)
+    tip = by.at(axial, radial)
     _check(tip, member.name, flank, "main", 1, columns)
     start, top = tip.contact, tip.contact[:, 0]
     points: list[SurfacePoints] = []
     names: list[str] = []
-    for part in reversed(sections):
-        section = sections[part]
+    for part in reversed(by.sections):
+        section = by.sections[part]
         first, last = _ends(section, top if part == "main" else None, columns)
         count = dict(rows)[part]
         for fraction in np.linspace(0.0, 1.0, count)[0 if part == "main" else 1 :]:
             u = first + fraction * (last - first)
             if part == "edge" and section.arc is not None:
                 start = np.column_stack([u, start[:, 1:]])
-            row = solve_curve(how, section, u, direction, distance, np.column_stack([u, start[:, 1:]]))
+            row = solve_curve(by.how, section, u, direction, distance, np.column_stack([u, start[:, 1:]]))
             _check(row, member.name, flank, part, len(points), columns)
             points.append(row)
             names.append(part)

@@ -12,12 +12,12 @@ import numpy as np
 from derivations.notation import SINGULAR_SINE
 from gearmath.bevel.flank import Grid, blank_grid, solve_places
 from gearmath.bevel.generation import BladeCut, Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.method import actual_cut, blade_sections, cut_generation_of, motion_of
+from gearmath.bevel.method import actual_cut, motion_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
-from gearmath.bevel.tooth import SHARP_EDGE
+from gearmath.bevel.tooth import sharp_edged
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+from gearmath.specs.bevel_set import FLANKS, Flank, Member
 from gearmath.specs.milling_machine import MillingMachine
 
 #: How far the flank may deviate from nominal because of straight blocks. [mm]
@@ -103,25 +103,21 @@ def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[
     blade is taken to have the smallest radius there is. With each row come the name of its section, and point radius
     and pressure angle (n,2) of the straight blade that touches there. Points without a solution say so.
     """
-    spec = member.flank(flank).model_copy(update={"design": None})
-    if spec.blade_edge_radius == 0.0:
-        spec = spec.model_copy(update={"blade_edge_radius": SHARP_EDGE})
-    how = cut_generation_of(member, flank)
+    by = actual_cut(member.model_copy(update={flank: sharp_edged(member.flank(flank))}), flank)
     delta = member.blank.delta
     direction = (math.cos(delta), math.sin(delta))
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.full(len(across), 0.5))
     distance = axial * direction[0] + radial * direction[1]
-    sections = blade_sections(spec, SIDES[flank])
-    start = solve_section(how, sections["main"], axial, radial).contact
-    for part in reversed(sections):
-        section = sections[part]
+    start = by.at(axial, radial).contact
+    for part in reversed(by.sections):
+        section = by.sections[part]
         for u, wanted in _downwards(part, section, start[:, 0]):
             if part == "edge":
                 start = np.column_stack([u, start[:, 1:]])
-            row = solve_curve(how, section, u, direction, distance, start)
+            row = solve_curve(by.how, section, u, direction, distance, start)
             start = row.contact
             if wanted:
-                yield part, row, _touching(section, u, how.side)
+                yield part, row, _touching(section, u, by.how.side)
 
 
 def _downwards(part: str, section: Section, now: np.ndarray) -> Iterator[tuple[np.ndarray, bool]]:
