@@ -9,8 +9,8 @@ import numpy as np
 
 from gearmath.bevel.check_blank import transverse_module
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank
-from gearmath.bevel.generation import Generation, Section, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import BladeCut, Generation, Section, solve_section
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.root import ENDS, PLACES, above_root, mean_place, root_trace
@@ -18,7 +18,7 @@ from gearmath.bevel.tooth import space_widths
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import SIDES, Member
+from gearmath.specs.bevel_set import Member
 
 #: Pressure angles of a flank at the mean point, and the steepest spiral angle. [degree]
 _PRESSURE, _STEEPEST = (5.0, 40.0), 55.0
@@ -39,7 +39,7 @@ class CutFlank:
     """A flank of space 0 (mm, rad): signed pressure and spiral angle at the mean point (8.4), the direction about z_w
     of the mean point and of the tips (3,), and ``across``, +1 where the space lies towards larger angles. ``root``
     (13,3) are the points that the tip of the blade leaves, from before the toe to beyond the heel, ``contact``
-    (1,3) is that at the mean point."""
+    (1,3) is that at the mean point, ``by`` what it is cut by."""
 
     pressure_angle: float
     spiral_angle: float
@@ -48,16 +48,15 @@ class CutFlank:
     tip_azimuth: np.ndarray
     root: np.ndarray
     contact: np.ndarray
+    by: BladeCut
 
 
-def cut_flank(member: Member, flank: str, how: Generation, corrected: bool = False) -> CutFlank:
-    """The flank that is generated like this. Raises Misfit where it cannot be the flank that the blank describes.
+def cut_flank(member: Member, flank: str, by: BladeCut, corrected: bool = False) -> CutFlank:
+    """The flank that is cut like this. Raises Misfit where it cannot be the flank that the blank describes.
 
     The root of ``corrected`` settings may lie farther from that of the blank.
     """
-    spec = member.flank(flank)
-    section = blade_sections(spec, SIDES[flank])["main"]
-    mean = solve_section(how, section, *mean_place(member))
+    mean = by.at(*mean_place(member))
     if not mean.converged.all():
         raise Misfit.of(member.name, flank, "the equation of meshing has no solution at the mean point")
     delta = member.blank.delta
@@ -72,13 +71,15 @@ def cut_flank(member: Member, flank: str, how: Generation, corrected: bool = Fal
             f"the mean point is cut with the cradle turned by {swing:+.4g} degrees from its cradle_angle, which must "
             f"be at most {OFF_CENTER:g}",
         )
-    root = _root(member, flank, how, mean.contact, np.array(_CORRECTED_ROOT if corrected else ROOT))
+    root = _root(member, flank, by.how, mean.contact, np.array(_CORRECTED_ROOT if corrected else ROOT))
     axial, radial = kernel("flank_place")(member.blank.vector, np.array([0.0, 0.5, 1.0]), np.ones(3))
-    tips = solve_section(how, section, axial, radial)
-    _check_tips(member.name, flank, section, tips.contact[:, 0], tips.converged, spec.blade_profile_height)
+    tips = by.at(axial, radial)
+    _check_tips(
+        member.name, flank, by.main, tips.contact[:, 0], tips.converged, member.flank(flank).blade_profile_height
+    )
     tip_azimuth = np.arctan2(tips.point[:, 1], tips.point[:, 0])
     _check_hand(member, flank, spiral, tip_azimuth)
-    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth, root, mean.contact)
+    return CutFlank(pressure, spiral, azimuth, 1 if across > 0 else -1, tip_azimuth, root, mean.contact, by)
 
 
 def check_grid(member: Member, flank: str) -> None:
@@ -88,15 +89,15 @@ def check_grid(member: Member, flank: str) -> None:
         points = solve_flank(member, flank, grid)
     except InputError as error:
         raise Misfit.of(member.name, flank, str(error).removeprefix(f"{member.name} {flank} flank, ")) from error
-    if generation_of(member, flank).motion.any():
-        _check_motion(member, flank, grid, points)
+    by = nominal_cut(member, flank)
+    if by.how.motion.any():
+        _check_motion(member, flank, by, grid, points)
 
 
-def _check_motion(member: Member, flank: str, grid: Grid, points: FlankPoints) -> None:
+def _check_motion(member: Member, flank: str, by: BladeCut, grid: Grid, points: FlankPoints) -> None:
     """A motion changes the form of the flank that the settings cut at rest, and not what flank it is."""
-    how, section = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
-    resting = replace(how, motion=np.zeros_like(how.motion))
-    rest = solve_section(resting, section, grid.axial.ravel(), grid.radial.ravel(), points.contact)
+    resting = replace(by.how, motion=np.zeros_like(by.how.motion))
+    rest = solve_section(resting, by.main, grid.axial.ravel(), grid.radial.ravel(), points.contact)
     delta = member.blank.delta
     _, _, across, azimuth = kernel("flank_angles")(delta, points.point, points.normal)
     _, _, _, before = kernel("flank_angles")(delta, rest.point, rest.normal)

@@ -9,7 +9,6 @@ import numpy as np
 from gearmath.bevel.check_blade import tip_taken
 from gearmath.bevel.check_blank import transverse_module, working_depth
 from gearmath.bevel.check_flank import CutFlank
-from gearmath.bevel.method import generation_of
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.root import ENDS, PLACES, Widths, slot_widths
 from gearmath.bevel.tooth import mean_pitch_radius
@@ -124,7 +123,7 @@ def _check_root(member: Member, concave: CutFlank, convex: CutFlank) -> None:
         return  # the blades of one cutter leave the root, and have their own check
     cut = {"concave": concave, "convex": convex}
     slots = {
-        flank: slot_widths(member, flank, generation_of(member, flank), cut[flank].contact, cut[flank].root, other.root)
+        flank: slot_widths(member, flank, cut[flank].by.how, cut[flank].contact, cut[flank].root, other.root)
         for flank, other in (("concave", convex), ("convex", concave))
     }
     taken = {flank: tip_taken(member.flank(flank), SIDES[flank]) for flank in FLANKS}

@@ -12,11 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.flank import Grid, nominal_points
-from gearmath.bevel.generation import solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.turning import half_turn
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.bevel_set import FLANKS, Member
 
 
 @dataclass(frozen=True)
@@ -59,12 +58,11 @@ def ease_off(pinion: Member, gear: Member, shaft_angle: float, flank: str, grid:
     """
     mating, _ = nominal_points(gear, FLANKS[1 - FLANKS.index(flank)], grid)
     at = conjugate_places(gear, pinion, shaft_angle, mating.point, mating.normal)
-    how, section = generation_of(pinion, flank), blade_sections(pinion.flank(flank), SIDES[flank])["main"]
     meets = np.isfinite(at.axial) & np.isfinite(at.radial)
     E = np.full(len(meets), np.nan)
     if not meets.any():
         return E.reshape(grid.shape)
-    own = solve_section(how, section, at.axial[meets], at.radial[meets])
+    own = nominal_cut(pinion, flank).at(at.axial[meets], at.radial[meets])
     ratio = pinion.teeth / gear.teeth
     from_crossing = mating.point[meets] - [0.0, 0.0, gear.blank.pitch_apex_beyond_crossing_point]
     (azimuth,) = kernel("conjugate_azimuth")(from_crossing, at.turn[meets], shaft_angle, ratio)

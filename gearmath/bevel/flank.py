@@ -17,13 +17,13 @@ import casadi as ca
 import numpy as np
 
 from derivations import notation
-from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve, solve_section, turning_sense
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import BladeCut, SurfacePoints, solve_curve, turning_sense
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.newton import TOLERANCE, FlankPoints, contact_guess, newton_step, residual_size
 from gearmath.engine.kernel import Kernel
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.bevel_set import FLANKS, Member
 from gearmath.specs.margins import Margins
 
 #: Newton steps of one call of the kernel; the solver repeats the call where that is not enough.
@@ -127,20 +127,16 @@ def solve_places(
 
 def nominal_points(member: Member, flank: str, grid: Grid) -> tuple[FlankPoints, np.ndarray]:
     """Points that the main section of the blade cuts on a grid, and their residuals, for every cutting method."""
-    return _points(*_generated(member, flank), grid)
+    return _points(nominal_cut(member, flank), grid)
 
 
-def _generated(member: Member, flank: str) -> tuple[Generation, Section]:
-    return generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])["main"]
-
-
-def _points(how: Generation, section: Section, grid: Grid) -> tuple[FlankPoints, np.ndarray]:
+def _points(by: BladeCut, grid: Grid) -> tuple[FlankPoints, np.ndarray]:
     place = (grid.axial.ravel(), grid.radial.ravel())
-    if how.still and how.rolling and section.arc is None:
-        simple, residual = solve_places(how.settings, how.side, *place)
+    if by.is_plain:
+        simple, residual = solve_places(by.how.settings, by.how.side, *place)
         if (residual <= TOLERANCE).all():
             return simple, residual
-    points = solve_section(how, section, *place)
+    points = by.at(*place)
     return points, points.residual
 
 
@@ -152,9 +148,10 @@ def solve_flank(member: Member, flank: str, grid: Grid) -> FlankPoints:
     """
     if flank not in FLANKS:
         raise ValueError(f"flank = {flank!r}: must be one of {FLANKS}")
-    how, section = _generated(member, flank)
-    found, residual = _points(how, section, grid)
-    sense = turning_sense(how, section, found.contact)
+    by = nominal_cut(member, flank)
+    section = by.main
+    found, residual = _points(by, grid)
+    sense = turning_sense(by.how, section, found.contact)
     points = SurfacePoints(found.contact, found.point, found.normal, residual, sense)
     u, unit = points.contact[:, 0], "mm" if section.arc is None else "rad"
     short, long = u < section.lower - _BLADE_SLACK, u > section.upper + _BLADE_SLACK
@@ -168,7 +165,7 @@ def solve_flank(member: Member, flank: str, grid: Grid) -> FlankPoints:
         if failed.any():
             k = int(np.argmax(failed))
             row, column = divmod(k, grid.shape[1])
-            if not points.converged[k] and _folds_above(how, section, points, grid, k, member.blank.delta):
+            if not points.converged[k] and _folds_above(by, points, grid, k, member.blank.delta):
                 what = _UNDERCUT
             raise InputError(
                 f"{member.name} {flank} flank, row {row}, column {column}: {what} "
@@ -184,7 +181,7 @@ def _turned_back(points: SurfacePoints, grid: Grid) -> np.ndarray:
     return np.sign(points.sense) != np.sign(reference)
 
 
-def _folds_above(how: Generation, section: Section, points: SurfacePoints, grid: Grid, k: int, delta: float) -> bool:
+def _folds_above(by: BladeCut, points: SurfacePoints, grid: Grid, k: int, delta: float) -> bool:
     """Whether the flank turns back on itself between point k and the nearest one found: it is undercut there.
 
     The blade is followed from that point to its tip, at its cone distance: at the singular line the sense vanishes.
@@ -196,9 +193,9 @@ def _folds_above(how: Generation, section: Section, points: SurfacePoints, grid:
     nearest = found[np.argmin(np.linalg.norm(place[found] - place[k], axis=1))]
     direction = (math.cos(delta), math.sin(delta))
     start, distance = points.contact[nearest], place[nearest] @ direction
-    tip = section.upper if section.tip_is_upper else section.lower
+    tip = by.main.upper if by.main.tip_is_upper else by.main.lower
     for u in np.linspace(start[0], tip, _FOLLOWED)[1:]:
-        one = solve_curve(how, section, np.array([u]), direction, np.array([distance]), np.array([[u, *start[1:]]]))
+        one = solve_curve(by.how, by.main, np.array([u]), direction, np.array([distance]), np.array([[u, *start[1:]]]))
         if not one.converged[0]:
             return False
         if np.sign(one.sense[0]) != np.sign(points.sense[nearest]):

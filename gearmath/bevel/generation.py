@@ -81,6 +81,31 @@ class SurfacePoints(FlankPoints):
         return self.residual <= TOLERANCE
 
 
+@dataclass(frozen=True)
+class BladeCut:
+    """What one flank is cut by: its generation, and the sections of the blade from the tip upwards.
+
+    By name: ``edge`` (if rounded), ``toprem`` (if there), ``main``.
+    """
+
+    how: Generation
+    sections: dict[str, Section]
+
+    @property
+    def main(self) -> Section:
+        """The section that cuts the flank itself."""
+        return self.sections["main"]
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether a straight blade of a machine at rest generates the flank, as in chapters 2 to 4."""
+        return self.how.still and self.how.rolling and self.main.arc is None
+
+    def at(self, axial: np.ndarray, radial: np.ndarray) -> SurfacePoints:
+        """Points that the main section cuts at places (n,), with or without being inside of it."""
+        return solve_section(self.how, self.main, axial, radial)
+
+
 def solve_section(
     flank: Generation, section: Section, axial: np.ndarray, radial: np.ndarray, start: np.ndarray | None = None
 ) -> SurfacePoints:

@@ -13,7 +13,7 @@ from gearmath.bevel.check_blank import transverse_module
 from gearmath.bevel.check_ease_off import ease_off_parts
 from gearmath.bevel.check_flank import cut_flank
 from gearmath.bevel.ease_off import Parts, hollow, is_least_inside
-from gearmath.bevel.method import generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.tooth import mean_backlash
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, BevelSet
 
@@ -37,7 +37,7 @@ def pair_figures(pair: BevelSet, found: dict[str, Parts] | None) -> dict[str, An
     if pair.pinion is None or pair.gear is None or found is None:
         return None
     cut = {
-        name: {flank: cut_flank(member, flank, generation_of(member, flank)) for flank in FLANKS}
+        name: {flank: cut_flank(member, flank, nominal_cut(member, flank)) for flank in FLANKS}
         for name, member in pair.members.items()
     }
     transverse = mean_backlash(pair.pinion, pair.gear)

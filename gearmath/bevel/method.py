@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearmath.bevel.generation import Generation, Section
+from gearmath.bevel.generation import BladeCut, Generation, Section
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.specs.bevel_set import SIDES, Flank, Member, Motion
@@ -42,6 +42,17 @@ def cut_generation_of(member: Member, flank: str) -> Generation:
     """How a flank comes about with the settings and the motion that the machine is really set to, corrections kept."""
     spec = member.flank(flank)
     return replace(generation_of(member, flank), settings=spec.vector, motion=motion_of(spec))
+
+
+def nominal_cut(member: Member, flank: str) -> BladeCut:
+    """What the nominal flank of a member is cut by. Raises ValueError as :func:`blade_sections` does."""
+    return BladeCut(generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank]))
+
+
+def actual_cut(member: Member, flank: str) -> BladeCut:
+    """The same with the settings, the motion and the blade that the machine really has, corrections kept."""
+    spec = member.flank(flank).model_copy(update={"design": None})
+    return BladeCut(cut_generation_of(member, flank), blade_sections(spec, SIDES[flank]))
 
 
 def require_plain(member: Member, what: str) -> None:

@@ -19,7 +19,7 @@ from gearmath.bevel.check_flank import CutFlank, check_grid, cut_flank
 from gearmath.bevel.check_index import check_index
 from gearmath.bevel.check_mates import CutFlanks, check_mates, check_space
 from gearmath.bevel.check_motion import check_motions
-from gearmath.bevel.method import cut_generation_of, generation_of
+from gearmath.bevel.method import actual_cut, nominal_cut
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.errors import ComputationError, InputError
@@ -152,7 +152,7 @@ def _check_cut(members: dict[str, Member], cut: dict[str, CutFlanks], share: flo
     spaces: dict[str, float] = {}
     for name, member in members.items():
         for flank in FLANKS:
-            cut[name][flank] = cut_flank(member, flank, generation_of(member, flank))
+            cut[name][flank] = cut_flank(member, flank, nominal_cut(member, flank))
         spaces[name] = check_space(member, cut[name])
         check_offset(member, sum(found.spiral_angle for found in cut[name].values()) / len(FLANKS))
     if len(members) == len(MEMBERS):
@@ -174,7 +174,7 @@ def _check_corrected(member: Member, flank: str, nominal: CutFlank) -> None:
     spec = member.flank(flank).model_copy(update={"design": None})
     corrected = member.model_copy(update={flank: spec})
     try:
-        found = cut_flank(corrected, flank, cut_generation_of(member, flank), True)
+        found = cut_flank(corrected, flank, actual_cut(member, flank), True)
         _check_change(member, flank, nominal, found)
     except Misfit as misfit:
         from gearmath.bevel.blame import most_changed

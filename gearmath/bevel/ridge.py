@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from gearmath.bevel.check_blade import tip_taken
-from gearmath.bevel.generation import solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import solve_curve
+from gearmath.bevel.method import blade_sections, nominal_cut
 from gearmath.bevel.root import ACROSS, ENDS, Widths, above_root, cone_distances, mean_place, root_trace
 from gearmath.bevel.tip_room import corner_wall, tip_lengths
 from gearmath.bevel.tooth import ToothSpace, sharp_edged
@@ -126,18 +126,17 @@ def _between(one: np.ndarray, up: np.ndarray, other: np.ndarray, up_other: np.nd
 def far_edge(member: Member, flank: str, width: float) -> tuple[np.ndarray, np.ndarray]:
     """Angles about the axis [rad] and heights over the root [mm] (rows, 13) of what the rounded edge on the far side
     of a cutter leaves, its lowest point first, at the places ``ACROSS``; NaN where it leaves nothing."""
-    how, far = generation_of(member, flank), SIDES[opposite(flank)]
-    main = blade_sections(member.flank(flank), SIDES[flank])["main"]
+    by, far = nominal_cut(member, flank), SIDES[opposite(flank)]
     edge = blade_sections(sharp_edged(other_side(member, flank, width)), far)["edge"]
     assert edge.arc is not None
-    start = solve_section(how, main, *mean_place(member)).contact
+    start = by.at(*mean_place(member)).contact
     lowest = root_trace(
-        member, flank, how, start, SIDES[flank] * (member.flank(flank).blade_point_radius - edge.arc[0])
+        member, flank, by.how, start, SIDES[flank] * (member.flank(flank).blade_point_radius - edge.arc[0])
     )
     angles = np.linspace(edge.upper, edge.lower, _ARC)
     u, places = (part.ravel() for part in np.meshgrid(angles, np.arange(len(ACROSS)), indexing="ij"))
     direction, distance = cone_distances(member.blank)
     begin = np.column_stack([u, lowest.contact[places, 1:]])
-    found = solve_curve(replace(how, side=far), edge, u, direction, distance[places], begin)
+    found = solve_curve(replace(by.how, side=far), edge, u, direction, distance[places], begin)
     point = np.where(found.converged[:, None], found.point, np.nan).reshape(_ARC, len(ACROSS), 3)
     return np.arctan2(point[..., 1], point[..., 0]), np.stack([above_root(member, row) for row in point])

@@ -13,8 +13,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearmath.bevel.generation import Section, solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import Section, solve_curve
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.root import (
     ACROSS,
     CORNER,
@@ -99,9 +99,8 @@ def _gaps(
 def corner_wall(member: Member, flank: str, length: float) -> tuple[np.ndarray, np.ndarray]:
     """Angles about the axis [rad] and heights over the root [mm] (rows,13) of what the end of a tip of a length leaves,
     its lowest point first, at the places ``ACROSS``; NaN where it leaves nothing."""
-    spec, side, how = member.flank(flank), SIDES[flank], generation_of(member, flank)
-    start = solve_section(how, blade_sections(spec, side)["main"], *mean_place(member)).contact
-    near = root_trace(member, flank, how, start, length).contact
+    spec, side, by = member.flank(flank), SIDES[flank], nominal_cut(member, flank)
+    near = root_trace(member, flank, by.how, by.at(*mean_place(member)).contact, length).contact
     end = tip_radius(spec, side) - side * (length - CORNER)
     arc = (end, spec.blade_tip_height + CORNER, CORNER)
     corner = Section(0.0, math.pi / 2, spec.nominal.blade_point_radius, spec.nominal.alpha, arc)
@@ -109,7 +108,7 @@ def corner_wall(member: Member, flank: str, length: float) -> tuple[np.ndarray, 
     angles, heights = [], []
     for normal in _NORMALS:
         near = np.column_stack([np.full(len(ACROSS), normal), near[:, 1:]])
-        found = solve_curve(replace(how, side=-side), corner, near[:, 0], direction, distance, near)
+        found = solve_curve(replace(by.how, side=-side), corner, near[:, 0], direction, distance, near)
         near = np.where(found.converged[:, None], found.contact, near)
         point = np.where(found.converged[:, None], found.point, np.nan)
         angles.append(np.arctan2(point[:, 1], point[:, 0]))

@@ -13,14 +13,14 @@ from functools import lru_cache
 
 import numpy as np
 
-from gearmath.bevel.generation import Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import Section, SurfacePoints, solve_curve
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.root import ENDS, Widths, mean_place, root_trace, root_widths, slot_widths
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
 from gearmath.shown import Shown, Shows
-from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+from gearmath.specs.bevel_set import FLANKS, Flank, Member
 
 #: A blade without edge radius is taken to have this one: no edge that cuts is sharper. [mm]
 SHARP_EDGE = 0.02
@@ -109,12 +109,11 @@ def tooth_space(
 
 def space_widths(member: Member) -> tuple[Widths, dict[str, Widths]]:
     """Widths of the root of space 0, and slot widths by flank. Raises InputError naming member and flank."""
-    hows = {flank: generation_of(member, flank) for flank in FLANKS}
+    cuts = {flank: nominal_cut(member, flank) for flank in FLANKS}
     starts, traces = {}, {}
-    for flank, how in hows.items():
-        section = blade_sections(member.flank(flank), SIDES[flank])["main"]
-        starts[flank] = solve_section(how, section, *mean_place(member)).contact
-        found = root_trace(member, flank, how, starts[flank])
+    for flank, by in cuts.items():
+        starts[flank] = by.at(*mean_place(member)).contact
+        found = root_trace(member, flank, by.how, starts[flank])
         if not found.converged[ENDS[0] : ENDS[-1] + 1].all():
             raise InputError(
                 f"{member.name} {flank} flank: the tip of the blade does not reach the root from toe to heel"
@@ -122,7 +121,7 @@ def space_widths(member: Member) -> tuple[Widths, dict[str, Widths]]:
         traces[flank] = np.where(found.converged[:, None], found.point, np.nan)
     slots = {}
     for flank, mate in zip(FLANKS, reversed(FLANKS), strict=True):
-        slots[flank] = slot_widths(member, flank, hows[flank], starts[flank], traces[flank], traces[mate])
+        slots[flank] = slot_widths(member, flank, cuts[flank].how, starts[flank], traces[flank], traces[mate])
     return root_widths(member, *traces.values()), slots
 
 
@@ -130,29 +129,26 @@ def flank_surface(
     member: Member, flank: str, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
 ) -> SpaceFlank:
     """One flank of space 0 from the face cone to the bottom of its fillet."""
-    spec = member.flank(flank)
-    sharp = sharp_edged(spec)
-    sections = blade_sections(sharp, SIDES[flank])
-    how = generation_of(member, flank)
+    by = nominal_cut(member.model_copy(update={flank: sharp_edged(member.flank(flank))}), flank)
     across = np.linspace(0.0, 1.0, columns)
     delta = member.blank.delta
     direction = (math.cos(delta), math.sin(delta))
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.ones(columns))
     distance = axial * direction[0] + radial * direction[1]
-    tip = solve_section(how, sections["main"], axial, radial)
+    tip = by.at(axial, radial)
     _check(tip, member.name, flank, "main", 1, columns)
     start, top = tip.contact, tip.contact[:, 0]
     points: list[SurfacePoints] = []
     names: list[str] = []
-    for part in reversed(sections):
-        section = sections[part]
+    for part in reversed(by.sections):
+        section = by.sections[part]
         first, last = _ends(section, top if part == "main" else None, columns)
         count = dict(rows)[part]
         for fraction in np.linspace(0.0, 1.0, count)[0 if part == "main" else 1 :]:
             u = first + fraction * (last - first)
             if part == "edge" and section.arc is not None:
                 start = np.column_stack([u, start[:, 1:]])
-            row = solve_curve(how, section, u, direction, distance, np.column_stack([u, start[:, 1:]]))
+            row = solve_curve(by.how, section, u, direction, distance, np.column_stack([u, start[:, 1:]]))
             _check(row, member.name, flank, part, len(points), columns)
             points.append(row)
             names.append(part)
@@ -200,8 +196,7 @@ def tooth_thickness(member: Member, axial: float, radius: float) -> float:
     """Transverse arc [mm] of the tooth at a place on the blank, z_w and radius [mm]: the pitch less the space."""
     angles = []
     for flank in FLANKS:
-        section = blade_sections(member.flank(flank), SIDES[flank])["main"]
-        points = solve_section(generation_of(member, flank), section, np.array([axial]), np.array([radius]))
+        points = nominal_cut(member, flank).at(np.array([axial]), np.array([radius]))
         if not points.converged.all():
             raise InputError(f"{flank} flank: no point at z = {axial:.3f}, radius {radius:.3f} mm")
         angles.append(float(_angle(points.point)[0]))

@@ -10,7 +10,7 @@ from gearmath.bevel.blank import evaluate
 from gearmath.bevel.check_blank import transverse_module
 from gearmath.bevel.check_flank import cut_flank
 from gearmath.bevel.design.verdict import top_land
-from gearmath.bevel.method import generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.tooth import mean_tooth_thickness
 from gearmath.specs.bevel_set import FLANKS, Member
 
@@ -28,7 +28,7 @@ def dimensions(member: Member) -> list[Dimension]:
     """What a drawing of a member states, beside the cone angles. Raises InputError where the flanks cannot be cut."""
     blank, ends = member.blank, evaluate("blank_ends", {"blank": member.blank.vector})
     mean, sine = transverse_module(member), math.sin(blank.delta)
-    cuts = {flank: cut_flank(member, flank, generation_of(member, flank)) for flank in FLANKS}
+    cuts = {flank: cut_flank(member, flank, nominal_cut(member, flank)) for flank in FLANKS}
     spiral = sum(abs(cut.spiral_angle) for cut in cuts.values()) / len(cuts)
     heel = blank.mean_cone_distance + blank.face_width / 2
     thickness = mean_tooth_thickness(member)

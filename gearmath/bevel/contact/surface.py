@@ -11,12 +11,12 @@ import casadi as ca
 import numpy as np
 
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.newton import FlankPoints
 from gearmath.engine.kernel import Kernel
 from gearmath.engine.points import Points
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import SIDES, Blank, Member
+from gearmath.specs.bevel_set import Blank, Member
 
 #: The borders of a flank, in the order of ``Surface.borders``. The root makes no edge: there the fillet begins.
 BORDERS = ("tip", "toe", "heel", "root")
@@ -119,17 +119,16 @@ class ContactSurface:
 
 def nominal_surface(member: Member, flank: str) -> ContactSurface:
     """The nominal flank of a member: what the main section of its blade cuts, whatever the method."""
-    how, sections = generation_of(member, flank), blade_sections(member.flank(flank), SIDES[flank])
-    section = sections["main"]
-
+    by = nominal_cut(member, flank)
+    how, section = by.how, by.main
     delta, distance = member.blank.delta, member.blank.mean_cone_distance
     mean = _slowly(how, section, *(np.array([distance * f(delta)]) for f in (math.cos, math.sin))).contact[0]
     function = _function(how.with_blade(section), section, mean)
     solve = _solver(function, mean, lambda axial, radial: _slowly(how, section, axial, radial))
     borders = _borders(member, section)
     fillet, depth = None, 0.0
-    if "edge" in sections and "toprem" not in sections and not _undercut(member.blank, how, section, mean):
-        fillet, depth = _fillet(how, sections["edge"], borders[ROOT])
+    if "edge" in by.sections and "toprem" not in by.sections and not _undercut(member.blank, how, section, mean):
+        fillet, depth = _fillet(how, by.sections["edge"], borders[ROOT])
     return ContactSurface(function, borders, solve, member.blank, member.teeth, fillet, depth)
 
 

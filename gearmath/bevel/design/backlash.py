@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-from gearmath.bevel.generation import solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.tooth import mean_backlash, mean_pitch_radius
 from gearmath.specs.bevel_set import FLANKS, SIDES, Member
 from gearmath.specs.design import Shop
@@ -77,7 +76,6 @@ def _turned(member: Member, turns: dict[str, float], step: float = 0.0) -> Membe
 def _azimuth(member: Member, flank: str) -> float:
     """Angle about z_w [rad] of a flank at the mean point of the pitch cone."""
     delta, mean = member.blank.delta, member.blank.mean_cone_distance
-    section = blade_sections(member.flank(flank), SIDES[flank])["main"]
     place = np.array([mean * math.cos(delta)]), np.array([mean * math.sin(delta)])
-    (point,) = solve_section(generation_of(member, flank), section, *place).point
+    (point,) = nominal_cut(member, flank).at(*place).point
     return math.atan2(point[1], point[0])

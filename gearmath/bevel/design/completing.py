@@ -19,7 +19,7 @@ from gearmath.bevel.design.pinion import roll_rows, root_of
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.method import blade_sections, generation_of, nominal_cut
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.tooth import mean_pitch_radius
 from gearmath.bevel.turning import half_turn, turned
@@ -186,9 +186,7 @@ def _turns(start: Member, requests: Mapping[str, Request], backlash: float) -> d
     for flank in FLANKS:
         roll = requests[flank].roll
         point = roll.point
-        section = blade_sections(start.flank(flank), SIDES[flank])["main"]
-        place = point[2:3], np.array([math.hypot(point[0], point[1])])
-        at = solve_section(generation_of(start, flank), section, *place)
+        at = nominal_cut(start, flank).at(point[2:3], np.array([math.hypot(point[0], point[1])]))
         if not at.converged.all():
             raise ComputationError(f"pinion {flank} flank: the crown gear has no point where contact is wanted")
         own[flank] = math.atan2(at.point[0, 1], at.point[0, 0]) - math.atan2(point[1], point[0])

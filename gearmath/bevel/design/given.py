@@ -6,7 +6,7 @@ import math
 
 from gearmath.bevel.check_flank import cut_flank
 from gearmath.bevel.contact.report import SIDES
-from gearmath.bevel.method import generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, BevelSet, Member
 from gearmath.specs.design import DesignData
@@ -51,7 +51,7 @@ def _check_angles(given: BevelSet, gear: Member, data: DesignData, name: str) ->
         raise InputError(
             f"{name}: shaft_angle = {data.shaft_angle:g}: must be {given.shaft_angle:g}, as the set has it"
         )
-    cuts = {flank: cut_flank(gear, flank, generation_of(gear, flank)) for flank in FLANKS}
+    cuts = {flank: cut_flank(gear, flank, nominal_cut(gear, flank)) for flank in FLANKS}
     spiral = sum(abs(math.degrees(cut.spiral_angle)) for cut in cuts.values()) / len(cuts)
     found = [("mean_spiral_angle", spiral, _SPIRAL)]
     for side, of_pinion in SIDES.items():

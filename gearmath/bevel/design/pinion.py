@@ -13,13 +13,13 @@ from gearmath.bevel.design.local_settings import FIRST, MOVING, NAMES, LocalSyst
 from gearmath.bevel.design.request import Request
 from gearmath.bevel.design.rolling import Meeting
 from gearmath.bevel.design.whole_flank import Fitted, WholeFlank, fit
-from gearmath.bevel.generation import Generation, Section, solve_curve, solve_section, turning_sense
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import BladeCut, Generation, Section, solve_curve, solve_section, turning_sense
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.root import FLAT_BLADE
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import SETTINGS, SIDES, Member
+from gearmath.specs.bevel_set import SETTINGS, Member
 from gearmath.specs.cut import ANGULAR
 from gearmath.specs.toml import checked
 
@@ -66,8 +66,9 @@ def pinion_flank(start: Member, name: str, asked: Request, free: tuple[str, ...]
 
     Raises ComputationError where the settings cannot be followed that far, InputError where they leave places uncut.
     """
-    how, section = generation_of(start, name), blade_sections(start.flank(name), SIDES[name])["main"]
-    x, begin = _crown_gear(start, how, section, asked)
+    by = nominal_cut(start, name)
+    how, section = by.how, by.main
+    x, begin = _crown_gear(start, by, asked)
     end = WantedPoint(
         asked.roll.point,
         asked.roll.normal,
@@ -148,10 +149,10 @@ def _without(problem: WholeFlank, name: str) -> WholeFlank:
     return replace(problem, extra=tuple(problem.extra[k] for k in kept), bounds=problem.bounds[kept])
 
 
-def _crown_gear(member: Member, how: Generation, section: Section, asked: Request) -> tuple[np.ndarray, WantedPoint]:
+def _crown_gear(member: Member, by: BladeCut, asked: Request) -> tuple[np.ndarray, WantedPoint]:
     """The crown gear's flank turned to the wanted point, at θ = 0 there: x, and what it has."""
-    P = asked.roll.point
-    at = solve_section(how, section, P[2:3], np.array([math.hypot(P[0], P[1])]))
+    P, how = asked.roll.point, by.how
+    at = by.at(P[2:3], np.array([math.hypot(P[0], P[1])]))
     if not at.converged.all():
         raise ComputationError(f"{asked.side}: the crown gear's flank has no point where contact is wanted")
     turn = math.atan2(P[1], P[0]) - math.atan2(at.point[0, 1], at.point[0, 0])

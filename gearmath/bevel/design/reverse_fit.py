@@ -25,6 +25,7 @@ from gearmath.bevel.identify.compensation import identify
 from gearmath.bevel.identify.flank_target import FlankTarget, located
 from gearmath.bevel.identify.root_line import root_line
 from gearmath.bevel.identify.variables import parts
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.misfit import Misfit
 from gearmath.bevel.newton import FlankPoints
 from gearmath.errors import ComputationError, InputError
@@ -110,7 +111,7 @@ def _is_flank(start: Member, hows: dict[str, Generation]) -> bool:
     try:
         member = member_of(start, hows)
         for flank, how in hows.items():
-            cut_flank(member, flank, how)
+            cut_flank(member, flank, replace(nominal_cut(member, flank), how=how))
             check_grid(member, flank)
     except (Misfit, InputError, ComputationError):
         return False

@@ -15,12 +15,12 @@ import numpy as np
 
 from gearmath.bevel.crown_gear import CrownTooth, Method, crown_gear_member
 from gearmath.bevel.design.reverse_points import GivenFlank
-from gearmath.bevel.generation import Generation, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import Generation
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.turning import turned
 from gearmath.errors import ComputationError, InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import FLANKS, SETTINGS, SIDES, Blank, Member
+from gearmath.specs.bevel_set import FLANKS, SETTINGS, Blank, Member
 
 #: Blade height over the whole depth at the heel: the contact climbs a blade further than the tooth is deep.
 _BLADE_RESERVE = 1.8
@@ -209,9 +209,9 @@ def placed(member: Member, means: dict[str, MeanPoint]) -> dict[str, Generation]
     """
     hows, turns = {}, {}
     for flank in FLANKS:
-        hows[flank] = generation_of(member, flank)
-        section, point = blade_sections(member.flank(flank), SIDES[flank])["main"], means[flank].point
-        at = solve_section(hows[flank], section, point[2:], np.array([math.hypot(point[0], point[1])]))
+        by, point = nominal_cut(member, flank), means[flank].point
+        hows[flank] = by.how
+        at = by.at(point[2:], np.array([math.hypot(point[0], point[1])]))
         if not at.converged.all():
             raise ComputationError(f"{flank} flank: the crown gear's settings do not cut the mean point")
         turns[flank] = math.atan2(point[1], point[0]) - math.atan2(at.point[0, 1], at.point[0, 0])

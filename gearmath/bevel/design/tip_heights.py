@@ -10,12 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from gearmath.bevel.design.rounding import to_step
-from gearmath.bevel.generation import solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.root import ENDS, above_root, mean_place, root_trace
 from gearmath.bevel.tooth import space_widths
 from gearmath.errors import ComputationError
-from gearmath.specs.bevel_set import FLANKS, SIDES, Member
+from gearmath.specs.bevel_set import FLANKS, Member
 
 #: Heights below this are left out [mm]; each trial is nearer by the cosine of the tilt.
 _LEAST, _TRIALS = 1e-3, 3
@@ -40,10 +39,8 @@ def with_tip_heights(member: Member, step: float) -> Member:
 
 def _middle(member: Member, flank: str, half: float) -> np.ndarray:
     """How high (9,) [mm] over the root of the blank the tip of a blade cuts, toe to heel, ``half`` off its corner."""
-    how = generation_of(member, flank)
-    section = blade_sections(member.flank(flank), SIDES[flank])["main"]
-    start = solve_section(how, section, *mean_place(member)).contact
-    trace = root_trace(member, flank, how, start, half)
+    by = nominal_cut(member, flank)
+    trace = root_trace(member, flank, by.how, by.at(*mean_place(member)).contact, half)
     inside = slice(ENDS[0], ENDS[-1] + 1)
     if not trace.converged[inside].all():
         raise ComputationError(

@@ -50,7 +50,7 @@ class ProbeMachine:
         lowest: float = 0.0,
         seat: Mounting | None = None,
     ) -> None:
-        self.member, self.name, self.calibration, self.stock = member, member.name, calibration, stock
+        self.member, self.calibration, self.stock = member, calibration, stock
         self._deepest = BODY_ERROR - min(lowest, 0.0)
         here, axes = mounted(np.zeros((3, 3)), np.eye(3), seat or Mounting())
         self._moved, self._tilted = here[0], axes

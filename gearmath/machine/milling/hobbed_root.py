@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearmath.bevel.generation import solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, generation_of
+from gearmath.bevel.generation import solve_curve
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.ridge import ridge_of_tips
 from gearmath.bevel.root import cone_distances, mean_place, root_height, tip_plane, tip_radius
 from gearmath.bevel.tip_room import corner_wall, tip_lengths
@@ -48,16 +48,15 @@ def _left_by(
     """Heights (n,) [mm] above the pitch cone that the tip of one kind of blade leaves at cone distances and azimuths
     (n,), NaN beside it; and which points (n,) at heights ``level`` lie at its end, or between that and the wall there.
     """
-    spec, side, how = member.flank(flank), SIDES[flank], generation_of(member, flank)
+    spec, side, by = member.flank(flank), SIDES[flank], nominal_cut(member, flank)
     (tip,) = (edge for edge in blades_of(member).edges if (edge.flank, edge.part) == (flank, "tip"))
     (direction, _), count = cone_distances(member.blank), len(distance)
-    main = blade_sections(spec, side)["main"]
-    near = np.repeat(solve_section(how, main, *mean_place(member)).contact, count, axis=0)
+    near = np.repeat(by.at(*mean_place(member)).contact, count, axis=0)
     found = []
     for u in np.linspace(tip.lower, tip.upper, _ALONG):
         section, end = tip_plane(spec, side, side * (tip_radius(spec, side) - tip.shape[0]) + u)
         near[:, 0] = end
-        row = solve_curve(how, section, near[:, 0], direction, distance, near)
+        row = solve_curve(by.how, section, near[:, 0], direction, distance, near)
         found.append(np.where(row.converged[:, None], row.point, np.nan))
         near = np.where(row.converged[:, None], row.contact, near)
     x, y, z = np.moveaxis(np.stack(found), 2, 0)

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearmath.bevel.flank import Grid
-from gearmath.bevel.method import blade_sections
+from gearmath.bevel.generation import BladeCut
+from gearmath.bevel.method import actual_cut
 from gearmath.kernels import kernel
 from gearmath.machine.planning.path import below_the_flank, flank_points, points_found
 from gearmath.specs.bevel_set import SIDES, Member
@@ -67,8 +68,9 @@ def joined(rows: Sequence[GeneratedLines]) -> GeneratedLines:
 
 def flank_rows(member: Member, flank: str) -> Iterator[GeneratedLines]:
     """Rows of points that every line of contact crosses at its ends and between: along the tooth, at toe and heel."""
+    by = actual_cut(member, flank)
     for grid in _curves(member):
-        yield flank_row(member, flank, grid)
+        yield flank_row(by, grid)
 
 
 def flank_curve(
@@ -87,7 +89,7 @@ def flank_curve(
 
     even = np.linspace(0.0 if across is None else -_DEEP, 1.0, _EVEN)
     theta = flank_points(member, flank, grid(even)).contact[:, 2]
-    return flank_row(member, flank, grid(np.union1d(even, _places(rolls, theta, even))))
+    return flank_row(actual_cut(member, flank), grid(np.union1d(even, _places(rolls, theta, even))))
 
 
 def foot_curves(member: Member, flank: str, rolls: np.ndarray | None = None) -> Iterator[GeneratedLines]:
@@ -131,15 +133,14 @@ def _curves(member: Member) -> Iterator[Grid]:
         yield Grid(axial[None], radial[None])
 
 
-def flank_row(member: Member, flank: str, grid: Grid) -> GeneratedLines:
+def flank_row(by: BladeCut, grid: Grid) -> GeneratedLines:
     """The points of one row that lie on the blade; none where an undercut takes away the whole row."""
-    spec, side = member.flank(flank), SIDES[flank]
-    section = blade_sections(spec.model_copy(update={"design": None}), side)["main"]
-    points = points_found(member, flank, grid)
+    section, side = by.main, by.how.side
+    points = points_found(by, grid)
     u = points.contact[:, 0]
     if section.arc is None:
         on_blade = (u > section.lower + _TIP) & (u < section.upper)
-        blade = np.broadcast_to([spec.blade_point_radius, spec.alpha], (len(u), 2))
+        blade = np.broadcast_to([section.point_radius, section.pressure_angle], (len(u), 2))
     else:
         on_blade = (u > section.lower) & (u < section.upper)
         blade = np.column_stack(kernel("touching_blade")(u, np.array(section.arc), side))

@@ -11,13 +11,13 @@ import numpy as np
 
 from derivations.notation import SINGULAR_SINE
 from gearmath.bevel.flank import Grid, blank_grid, solve_places
-from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve, solve_section
-from gearmath.bevel.method import blade_sections, cut_generation_of, motion_of
+from gearmath.bevel.generation import BladeCut, Section, SurfacePoints, solve_curve, solve_section
+from gearmath.bevel.method import actual_cut, motion_of
 from gearmath.bevel.newton import TOLERANCE, FlankPoints
-from gearmath.bevel.tooth import SHARP_EDGE
+from gearmath.bevel.tooth import sharp_edged
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
-from gearmath.specs.bevel_set import FLANKS, SIDES, Flank, Member
+from gearmath.specs.bevel_set import FLANKS, Flank, Member
 from gearmath.specs.milling_machine import MillingMachine
 
 #: How far the flank may deviate from nominal because of straight blocks. [mm]
@@ -55,43 +55,40 @@ def flank_points(member: Member, flank: str, grid: Grid) -> FlankPoints:
     Those without a solution are left out: the corners of a grid may lie beyond what the blade reaches.
     Raises InputError where that is so everywhere.
     """
-    points = points_found(member, flank, grid)
+    points = points_found(actual_cut(member, flank), grid)
     if not len(points.contact):
         raise InputError(f"{flank} flank: the equation of meshing has no solution anywhere on the flank")
     return points
 
 
-def points_found(member: Member, flank: str, grid: Grid) -> FlankPoints:
+def points_found(by: BladeCut, grid: Grid) -> FlankPoints:
     """The same for a row that may lie beyond the flank altogether: none then."""
-    spec = member.flank(flank)
-    how = cut_generation_of(member, flank)
-    section = blade_sections(spec.model_copy(update={"design": None}), SIDES[flank])["main"]
     axial, radial = grid.axial.ravel(), grid.radial.ravel()
-    if how.still and how.rolling and section.arc is None:
-        points, residual = solve_places(how.settings, how.side, axial, radial)
+    if by.is_plain:
+        points, residual = solve_places(by.how.settings, by.how.side, axial, radial)
     else:
-        points = _row_points(how, section, axial, radial)
+        points = _row_points(by, axial, radial)
         residual = points.residual
     found = residual <= TOLERANCE
     return FlankPoints(points.contact[found], points.point[found], points.normal[found])
 
 
-def _row_points(how: Generation, section: Section, axial: np.ndarray, radial: np.ndarray) -> SurfacePoints:
+def _row_points(by: BladeCut, axial: np.ndarray, radial: np.ndarray) -> SurfacePoints:
     """Points at places that follow each other on a flank: many of them start from every twentieth.
 
     Beside one of these without a solution, which takes long to find out, none is sought.
     """
     some = np.arange(0, len(axial), _EVERY)
     if len(some) < _EVERY:
-        return solve_section(how, section, axial, radial)
-    coarse = solve_section(how, section, axial[some], radial[some])
+        return by.at(axial, radial)
+    coarse = by.at(axial[some], radial[some])
     good = coarse.converged
     if not good.any():
         return coarse
     index = np.arange(len(axial))
     near = np.interp(index, some, good.astype(float)) == 1.0
     start = np.column_stack([np.interp(index[near], some[good], values) for values in coarse.contact[good].T])
-    return solve_section(how, section, axial[near], radial[near], start)
+    return solve_section(by.how, by.main, axial[near], radial[near], start)
 
 
 def whole_flank(member: Member, flank: str) -> FlankPoints:
@@ -106,25 +103,21 @@ def below_the_flank(member: Member, flank: str, across: np.ndarray) -> Iterator[
     blade is taken to have the smallest radius there is. With each row come the name of its section, and point radius
     and pressure angle (n,2) of the straight blade that touches there. Points without a solution say so.
     """
-    spec = member.flank(flank).model_copy(update={"design": None})
-    if spec.blade_edge_radius == 0.0:
-        spec = spec.model_copy(update={"blade_edge_radius": SHARP_EDGE})
-    how = cut_generation_of(member, flank)
+    by = actual_cut(member.model_copy(update={flank: sharp_edged(member.flank(flank))}), flank)
     delta = member.blank.delta
     direction = (math.cos(delta), math.sin(delta))
     axial, radial = kernel("flank_place")(member.blank.vector, across, np.full(len(across), 0.5))
     distance = axial * direction[0] + radial * direction[1]
-    sections = blade_sections(spec, SIDES[flank])
-    start = solve_section(how, sections["main"], axial, radial).contact
-    for part in reversed(sections):
-        section = sections[part]
+    start = by.at(axial, radial).contact
+    for part in reversed(by.sections):
+        section = by.sections[part]
         for u, wanted in _downwards(part, section, start[:, 0]):
             if part == "edge":
                 start = np.column_stack([u, start[:, 1:]])
-            row = solve_curve(how, section, u, direction, distance, start)
+            row = solve_curve(by.how, section, u, direction, distance, start)
             start = row.contact
             if wanted:
-                yield part, row, _touching(section, u, how.side)
+                yield part, row, _touching(section, u, by.how.side)
 
 
 def _downwards(part: str, section: Section, now: np.ndarray) -> Iterator[tuple[np.ndarray, bool]]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from derivations import Quantity, notation
 from gearmath.bevel.flank import blank_grid
+from gearmath.bevel.method import actual_cut
 from gearmath.engine.kernel import Kernel
 from gearmath.kernels import kernel
 from gearmath.machine.planning.blocks import on_one_machine
@@ -55,7 +56,7 @@ def entry_by_axes() -> Kernel:
 def axis_effects(member: Member, cut: Cut, machine: MillingMachine) -> np.ndarray:
     """How far points of the flanks (n,) move along their normals with X Y Z A B (n,5), mm per mm and mm per rad."""
     member, grid = on_one_machine(member, cut), blank_grid(member, *_GRID, 0.0)
-    lines = joined([flank_row(member, flank, grid) for flank in cut.flanks])
+    lines = joined([flank_row(actual_cut(member, flank), grid) for flank in cut.flanks])
     axes = axis_positions(member.flank(cut.flanks[0]), lines.theta, machine.pivot_height, machine.pivot)
     (gradient,) = entry_by_axes()(axes, machine.pivot_height, *lines.on_blade, machine.pivot)
     return np.abs(gradient)

@@ -9,6 +9,7 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank, solve_places
+from gearmath.bevel.method import actual_cut, nominal_cut
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, SIDES
 
@@ -208,3 +209,16 @@ def test_no_point_is_returned_that_is_not_in_mesh_at_its_place_and_on_the_blade(
     np.testing.assert_allclose(np.hypot(*points.point[0, :2]), abs(radial[0, 0]), atol=1e-8)
     moved = witness.surface(u, beta, theta + step, x, side) - witness.surface(u, beta, theta - step, x, side)
     assert abs(moved @ points.normal[0]) / (2 * step) < 1e-3  # mm/rad, of about 1000 where nothing is in mesh
+
+
+def test_corrected_flank_has_the_cut_of_its_design_and_that_of_its_settings(gear_set, altered, nominal_settings):
+    before = gear_set.pinion.concave
+    values = {"radial_distance": before.radial_distance + 0.05, "blade_point_radius": before.blade_point_radius + 0.1}
+    pinion = altered(gear_set, "pinion", "concave", nominal_settings(before), **values).pinion
+    wanted, really = nominal_cut(pinion, "concave"), actual_cut(pinion, "concave")
+    assert wanted.sections == nominal_cut(gear_set.pinion, "concave").sections
+    np.testing.assert_array_equal(wanted.how.settings, before.vector)
+    np.testing.assert_array_equal(really.how.settings, pinion.concave.vector)
+    assert really.main.point_radius == wanted.main.point_radius + 0.1
+    assert nominal_cut(gear_set.gear, "convex").is_plain
+    assert not nominal_cut(gear_set.gear.model_copy(update={"generation": "formate"}), "convex").is_plain

@@ -14,7 +14,7 @@ import tomlkit
 
 import gearmath
 from gearmath.bevel.check_flank import cut_flank
-from gearmath.bevel.method import generation_of
+from gearmath.bevel.method import nominal_cut
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import InputError
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet, load_bevel_set
@@ -467,7 +467,7 @@ def test_mirrored_pair_passes_and_its_spiral_angles_change_sign(name: str, moved
     for member in MEMBERS:
         for flank in FLANKS:
             one, two = (
-                cut_flank(each.member(member), flank, generation_of(each.member(member), flank))
+                cut_flank(each.member(member), flank, nominal_cut(each.member(member), flank))
                 for each in (pair, mirrored)
             )
             assert two.spiral_angle == pytest.approx(-one.spiral_angle, abs=1e-9)
@@ -486,7 +486,7 @@ def test_mirrored_pair_passes_and_its_spiral_angles_change_sign(name: str, moved
 def test_angles_at_the_mean_point_are_those_of_the_published_closed_form(gear_set, member, flank, pressure, spiral):
     """The matrices and the closed form of NASA CR-191009 with its settings, solved by another program."""
     spec = gear_set.member(member)
-    found = cut_flank(spec, flank, generation_of(spec, flank))
+    found = cut_flank(spec, flank, nominal_cut(spec, flank))
     assert math.degrees(found.pressure_angle) == pytest.approx(pressure, abs=1e-7)
     assert math.degrees(found.spiral_angle) == pytest.approx(spiral, abs=1e-7)
 

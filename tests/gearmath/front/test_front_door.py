@@ -85,6 +85,13 @@ def test_a_set_says_that_it_runs_on_edges_as_the_command_line_does() -> None:
     assert gm.load_set("spiral_7x43.toml").edge_note() == ""
 
 
+def test_a_member_made_from_values_is_the_one_that_it_is_said_to_be() -> None:
+    pinion = gm.load_set("nasa_tp3096_12x36.toml").pinion
+    made = gm.Member(pinion.gear_set, "pinion", type(pinion.spec).model_validate(pinion.spec.model_dump()))
+    np.testing.assert_array_equal(made.flank("convex", (1, 2)).point, pinion.flank("convex", (1, 2)).point)
+    assert pinion.gear_set.with_member(made).spec == pinion.gear_set.spec
+
+
 def test_a_set_is_written_and_read_back(tmp_path: Path) -> None:
     pair = gm.load_set("nasa_tp3096_12x36.toml")
     again = gm.load_set(pair.save(tmp_path / "set.toml"))
