@@ -164,9 +164,10 @@ def _passes(
 def _near(poses: tuple[np.ndarray, ...], point: np.ndarray, blades: Blades, reach: float) -> np.ndarray:
     """Whether points (m,3) come near an edge, whatever its direction, between two nodes: (m,n-1)."""
     center, axis = poses
-    from_center = point[:, None] - center[None]
-    height = -np.einsum("mnk,nk->mn", from_center, axis)
-    radius = np.sqrt(np.maximum(np.einsum("mnk,mnk->mn", from_center, from_center) - height**2, 0.0))
+    # by products of matrices instead of an array (m,n,3): what that rounds is far below the reach
+    height = np.einsum("nk,nk->n", center, axis) - point @ axis.T
+    square = np.einsum("mk,mk->m", point, point)[:, None] - 2 * point @ center.T + np.einsum("nk,nk->n", center, center)
+    radius = np.sqrt(np.maximum(square - height**2, 0.0))
     way = np.hypot(np.diff(radius, axis=1), np.diff(height, axis=1))
     near = np.zeros(way.shape, dtype=bool)
     for edge in blades.edges:
