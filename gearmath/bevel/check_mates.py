@@ -121,14 +121,15 @@ def _check_root(member: Member, concave: CutFlank, convex: CutFlank) -> None:
         )
     if member.cutting == "completing":
         return  # the blades of one cutter leave the root, and have their own check
-    cut = {"concave": concave, "convex": convex}
-    slots = {
-        flank: slot_widths(member, flank, cut[flank].by.how, cut[flank].contact, cut[flank].root, other.root)
-        for flank, other in (("concave", convex), ("convex", concave))
-    }
     taken = {flank: tip_taken(member.flank(flank), SIDES[flank]) for flank in FLANKS}
     flank = max(FLANKS, key=lambda one: taken[one])
-    if sum(taken.values()) > slots[flank].least:
+    stated = {one for one in FLANKS if member.flank(one).blade_point_width is not None}
+    slots = {
+        one: slot_widths(member, one, own.by.how, own.contact, own.root, other.root)
+        for one, own, other in (("concave", concave, convex), ("convex", convex, concave))
+        if one in stated or (one == flank and taken[flank] > 0)  # a slot takes as long as the rest of the check
+    }
+    if flank in slots and sum(taken.values()) > slots[flank].least:
         raise InputError(
             f"{member.name}.{flank}.blade_edge_radius = {member.flank(flank).blade_edge_radius:g}: the rounded edges "
             f"of both flanks take {sum(taken.values()):.3g} mm of the slot, which is {slots[flank].least:.3g} mm wide "

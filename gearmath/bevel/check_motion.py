@@ -33,7 +33,7 @@ def check_motions(member: Member) -> None:
 
 def _check_still(spec: Flank, table: str) -> None:
     for key, motion in (("motion", spec.motion), ("design.motion", spec.nominal_motion)):
-        if motion.matrix.any() or motion.roll.any():
+        if motion.moves:
             moving = next(k for k, values in motion.model_dump().items() if any(values))
             raise InputError(
                 f"{table}.{key}.{moving} = {list(getattr(motion, moving))}: the cradle stands still in a Formate "
@@ -60,7 +60,7 @@ def _check_still_roll(member: Member, spec: Flank, table: str) -> None:
 
 def _check_carried(member: Member, spec: Flank, table: str) -> None:
     for key, motion in (("motion", spec.motion), ("design.motion", spec.nominal_motion)):
-        if not (motion.matrix.any() or motion.roll.any()):
+        if not motion.moves:
             continue
         rows = dict(zip(MACHINE_SETTINGS, motion.matrix, strict=True))
         rows["modified_roll"] = motion_of(spec, key != "motion")[-1] - motion.matrix[-1]

@@ -75,7 +75,14 @@ class Motion(Sheet):
     @property
     def roll(self) -> np.ndarray:
         """2C, 6D, 24E, 120F (4,)."""
-        return np.pad(np.array(self.modified_roll, dtype=float), (0, 4 - len(self.modified_roll)))
+        roll = np.zeros(4)
+        roll[: len(self.modified_roll)] = self.modified_roll
+        return roll
+
+    @property
+    def moves(self) -> bool:
+        """Whether any setting moves."""
+        return any(any(getattr(self, name)) for name in type(self).model_fields)
 
 
 class Settings(Sheet):
