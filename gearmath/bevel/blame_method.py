@@ -43,7 +43,7 @@ def _others(members: Members) -> Iterator[tuple[str, Members]]:
 
 def _moves(member: Member, flank: str) -> bool:
     motion = member.flank(flank).motion
-    return bool(motion.matrix.any() or motion.roll.any())
+    return motion.moves
 
 
 def _times(motion: Motion, factor: float) -> Motion:
