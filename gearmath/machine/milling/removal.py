@@ -29,7 +29,8 @@ REACH = 20.0
 _NEWTON_STEPS = 7
 #: A point this little outside of the cutter counts as on it. [mm]
 _ON_CUTTER = 1e-7
-_SAMPLES, _DIVISIONS = 9, 8
+#: Blocks are divided so often, or until what lies between their samples is this little lower. [mm]
+_SAMPLES, _DIVISIONS, _SETTLED = 9, 8, 1e-9
 #: Lines whose candidates are divided together.
 _LINES = 64
 
@@ -241,7 +242,8 @@ def _divide(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Smallest distance within candidate blocks: sampled, and again around the smallest sample.
 
-    A candidate is given up when what its samples differ by cannot bring it below the smallest distance of its line.
+    A candidate is given up when what its samples differ by cannot bring it below the smallest distance of its line, or
+    is nothing.
     """
     entry = entry_along_block(body.sharp)
     count = len(lines[0])
@@ -264,7 +266,8 @@ def _divide(
         closer = order[smallest[order] < best[line[order]]]
         best[line[closer]], at[line[closer]] = smallest[closer], block[closer]
         sides = np.stack([t[np.arange(len(t)), np.clip(k + off, 0, _SAMPLES - 1)] for off in (-1, 1)])
-        keep = (smallest - (sides.max(axis=0) - smallest) <= best[line]) & (smallest < REACH)
+        lower = sides.max(axis=0) - smallest  # by so much at most does it come lower between its samples
+        keep = (smallest - lower <= best[line]) & (smallest < REACH) & (lower > _SETTLED)
         left, right = (s[np.arange(len(s)), np.clip(k + off, 0, _SAMPLES - 1)] for off in (-1, 1))
         block, line, low, width = block[keep], line[keep], left[keep], (right - left)[keep]
     return best, at
