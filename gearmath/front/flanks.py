@@ -59,7 +59,7 @@ class FlankSurface(Shown):
 
     def plot(self) -> Figure:
         """The flank in space, seen along the normal of its middle."""
-        from matplotlib.figure import Figure
+        from gearmath.plot.figure import Figure
 
         figure = Figure(figsize=(6, 5), layout="constrained")
         axes: Any = figure.add_subplot(projection="3d")

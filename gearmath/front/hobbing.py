@@ -121,9 +121,8 @@ class Job(Shown):
 
         Of a new run, or of a ``trace`` that :meth:`simulate` has filled.
         """
-        from matplotlib.figure import Figure
-
         from gearmath.plot import draw_gearbox_error
+        from gearmath.plot.figure import Figure
 
         if trace is None:
             trace = Trace(edges)

@@ -235,6 +235,14 @@ def test_the_line_of_a_measurement_has_its_key_figures() -> None:
     assert f"{largest:.6g}" in found._repr_html_()
 
 
+def test_every_figure_is_one_that_jupyter_shows() -> None:
+    assert _measured().plot()._repr_png_().startswith(b"\x89PNG")  # type: ignore[attr-defined]
+    sources = [path.read_text("utf-8") for path in Path(inspect.getfile(gm)).parent.rglob("*.py")]
+    drawing = [text for text in sources if re.search(r"\bFigure\(figsize", text)]
+    assert len(drawing) > 5
+    assert [text for text in drawing if "from gearmath.plot.figure import Figure" not in text] == []
+
+
 def test_a_contact_says_at_which_assembly() -> None:
     assert "V = 0.05, H = 0, J = 0 mm, shaft angle +0.1°" in EXAMPLES["Contact"]()._repr_html_()
 
