@@ -76,7 +76,7 @@ def test_a_device_is_not_replaced_by_a_file(tmp_path: Path) -> None:
 def test_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"absent: cannot be read: No such file"):
         read_text(tmp_path / "absent")
-    with pytest.raises(InputError, match=r"cannot be read: Is a directory"):
+    with pytest.raises(InputError, match=r"cannot be read: is a folder, name a file"):
         read_text(tmp_path)
     (tmp_path / "picture").write_bytes(b"ok \xff\xfe")
     with pytest.raises(InputError, match="picture: is no text file: byte 3 is not UTF-8"):

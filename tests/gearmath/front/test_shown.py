@@ -194,7 +194,7 @@ def _returned() -> dict[str, type]:
             else:
                 home, own = _imported(call.__module__).get(name, (None, name))
                 value = getattr(importlib.import_module(home), own) if home else None
-            if inspect.isclass(value) and value.__module__.startswith("gearmath"):
+            if inspect.isclass(value) and value.__module__.startswith("gearmath") and not hasattr(value, "_repr_png_"):
                 found[value.__name__] = value
     return found
 
