@@ -243,6 +243,17 @@ def test_every_figure_is_one_that_jupyter_shows() -> None:
     assert [text for text in drawing if "from gearmath.plot.figure import Figure" not in text] == []
 
 
+def test_steps_per_count_of_a_job_are_those_that_its_rule_makes() -> None:
+    job = gm.hobbing.plan("hobbing_plewes.toml", teeth=17)
+    assert "steps per count 125/544" in repr(job)
+    assert abs(job.simulate(edges=54_400).position - 54_400 * job.steps_per_count) <= 0.5
+
+
+@pytest.mark.parametrize("module", [gm, gm.hobbing, gm.results], ids=lambda one: one.__name__)
+def test_completion_offers_the_names_of_the_front_door_alone(module: Any) -> None:
+    assert set(dir(module)) == set(module.__all__)
+
+
 def test_a_contact_says_at_which_assembly() -> None:
     assert "V = 0.05, H = 0, J = 0 mm, shaft angle +0.1°" in EXAMPLES["Contact"]()._repr_html_()
 
