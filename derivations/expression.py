@@ -37,7 +37,7 @@ def _listed(value: Any) -> tuple | list:
     return value if isinstance(value, tuple | list) else (None,)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Expression:
     """Named inputs to named outputs: what a chapter returns and :mod:`gearmath.lowering` takes.
 
@@ -70,11 +70,22 @@ class Expression:
         used = set().union(
             *(sp.sympify(value).free_symbols for value in (*(v for _, v in self.outputs), *self.requires))
         )
+        known = set(map(str, given))
+        alike = sorted(known & set(map(str, used - given)))
+        if alike:
+            raise InputError(
+                f"{self.name} uses another symbol called {alike[0]} than that of its input: take the symbol of the "
+                f"quantity, {alike[0]}.symbol"
+            )
         if used - given:
             raise InputError(
                 f"{self.name} uses {sorted(map(str, used - given))}, which are not among its inputs "
-                f"{sorted(map(str, given))}: add them to the inputs, or substitute them"
+                f"{sorted(known)}: add them to the inputs, or substitute them"
             )
+
+    def __repr__(self) -> str:
+        given, made = (", ".join(one.name for one in some) for some in (self.inputs, dict(self.outputs)))
+        return f"<Expression: {self.name}, of {given}, gives {made}: {self.description}>"
 
     def _checks(self) -> Iterator[tuple[str, bool, str]]:
         """Of each field, whether its value can be, and what it must be."""

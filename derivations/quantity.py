@@ -38,7 +38,7 @@ def _are(values: Any, fit: Callable[[Any], bool]) -> bool:
 IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Quantity:
     """One named quantity: what it is, in which unit, of which shape, and where it is valid.
 
@@ -71,13 +71,16 @@ class Quantity:
         if not self.description or not self.unit:
             raise InputError(f"{self.name}: a quantity needs a description and a unit ('1' where it has none)")
 
+    def __repr__(self) -> str:
+        return f"<Quantity: {self.name} [{self.unit}], {self.description}>"
+
     def _checks(self) -> Iterator[tuple[str, bool, str]]:
         """Of each key, whether its value can be, and what it must be."""
         for key in ("description", "unit", "latex"):
             yield key, isinstance(getattr(self, key), str), "must be text"
         yield "latex", self.latex != "", "must not be empty"
         ordered = _are(self.domain, _is_number) and len(self.domain) == 2 and self.domain[0] < self.domain[1]
-        yield "domain", ordered, "must be the least and the greatest value, which is more"
+        yield "domain", ordered, "must be a tuple of the least and the greatest value, which is more"
         yield "shape", _are(self.shape, _is_count), "must be a tuple of whole numbers, at least 1"
         yield "kind", self.kind in ("real", "int"), "must be 'real' or 'int'"
         yield "values", _are(self.values, _is_number), "must be a tuple of numbers"

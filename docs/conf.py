@@ -32,10 +32,12 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
 nb_execution_mode = "off"  # `prepare` takes them as `make notebooks` ran them, and runs what is missing
 nb_merge_streams = True
-nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no script from elsewhere: sliders stand still on the page
+nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no script from elsewhere, and no Python behind a page
+_WIDGET = "application/vnd.jupyter.widget-view+json"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
+autodoc_preserve_defaults = True  # a default by its name, not by its address in memory
 autodoc_default_options = {"members": True, "undoc-members": False}
 
 # MathJax, with its fonts, comes with the wheel of jupyter-server-mathjax
@@ -66,12 +68,15 @@ def prepare(app: Sphinx) -> None:
     for source in sorted((ROOT / "notebooks").glob("*.ipynb")):
         executed = ROOT / "build" / "notebooks" / source.name
         fresh = executed.is_file() and executed.stat().st_mtime > source.stat().st_mtime
-        if fresh:
-            shutil.copyfile(executed, target / source.name)
-        else:
-            notebook = nbformat.read(source, as_version=4)
+        notebook = nbformat.read(executed if fresh else source, as_version=4)
+        if not fresh:
             NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(source.parent)}}).execute()
-            nbformat.write(notebook, target / source.name)
+        for output in (output for cell in notebook.cells for output in cell.get("outputs", ())):
+            if _WIDGET in output.get("data", {}):
+                output["data"] = {
+                    "text/markdown": f"*Sliders or a scene to turn: in Jupyter, open notebooks/{source.name}.*"
+                }
+        nbformat.write(notebook, target / source.name)
     write_chapters(HERE / "mathematics")
     mathjax, place = Path(jupyter_server_mathjax.__file__).parent / "static", HERE / "_static" / "mathjax"
     if not (place / "MathJax.js").is_file():

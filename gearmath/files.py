@@ -18,12 +18,10 @@ LARGEST = 200_000_000
 
 def check_place(path: Path) -> None:
     """Whether a file can be written to its folder. Raises InputError naming the file where it cannot."""
-    if not path.parent.is_dir():
-        raise InputError(f"{path}: cannot be written: No such file or directory")
     try:
         tempfile.TemporaryFile(dir=path.parent).close()  # not os.access, which grants root what no file system does
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise _unwritten(path, error) from error
 
 
 def check_writable(path: Path) -> None:
@@ -31,7 +29,17 @@ def check_writable(path: Path) -> None:
     try:
         os.close(os.open(path, os.O_WRONLY))  # not os.access, which knows no file system that is mounted to be read
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise _unwritten(path, error) from error
+
+
+def _unwritten(path: Path, error: OSError) -> InputError:
+    """Why a file cannot be written, in words that say what to do; else as the system has it."""
+    why = error.strerror
+    if not path.parent.is_dir():
+        why = f"there is no folder {path.parent}"
+    elif path.is_dir():
+        why = "is a folder, name a file"
+    return InputError(f"{path}: cannot be written: {why}")
 
 
 def write_text(path: Path, text: str) -> None:
@@ -64,7 +72,7 @@ def write_bytes(path: Path, content: bytes) -> None:
             raise InputError(f"{path}: cannot be written: is a device, name a file")
         handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     except OSError as error:
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise _unwritten(path, error) from error
     try:
         with os.fdopen(handle, "wb") as stream:
             stream.write(content)
@@ -72,7 +80,7 @@ def write_bytes(path: Path, content: bytes) -> None:
         os.replace(name, path)
     except OSError as error:
         os.unlink(name)
-        raise InputError(f"{path}: cannot be written: {error.strerror}") from error
+        raise _unwritten(path, error) from error
 
 
 def read_text(path: Path, most: int = LARGEST) -> str:
@@ -96,7 +104,8 @@ def read_bytes(path: Path, most: int = LARGEST) -> bytes:
         with path.open("rb") as stream:
             content = stream.read(most + 1)
     except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
+        why = "is a folder, name a file" if path.is_dir() else error.strerror
+        raise InputError(f"{path}: cannot be read: {why}") from error
     if len(content) > most:
         raise InputError(f"{path}: is larger than {most / 1e6:g} MB, which is the limit")
     return content

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import casadi as ca
 import sympy as sp
+from sympy.core.function import Application
 from sympy.core.relational import Relational
 
 from derivations.expression import Expression
@@ -112,7 +113,11 @@ def _walk(node: sp.Basic, values: Mapping[sp.Basic, ca.SX], name: str) -> ca.SX:
         return _mul(node, values, name)
     rule = RULES.get(type(node))
     if rule is None:
-        raise LoweringError(f"{name}: no CasADi rule for {type(node).__name__} in {node}")
+        known = sorted(one.__name__ for one in RULES if issubclass(one, Application) and issubclass(one, sp.Expr))
+        raise LoweringError(
+            f"{name}: no CasADi rule for {type(node).__name__} in {node}: write it in powers, Piecewise, "
+            f"{', '.join(known)}"
+        )
     return rule(*(_walk(argument, values, name) for argument in node.args))
 
 

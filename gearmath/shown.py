@@ -26,6 +26,7 @@ class Shown:
     def __repr__(self) -> str:
         what, figures = self._shown()
         parts = [f"{name} {_text(value, 4)} {unit}".rstrip() for name, value, unit in figures[:_IN_LINE]]
+        parts += ["..."] if len(figures) > _IN_LINE else []  # Jupyter's table has the others
         line = f"{type(self).__name__}: {', '.join((what, *parts))}"
         return f"<{line if len(line) <= _LONGEST - 2 else line[: _LONGEST - 5] + '...'}>"
 

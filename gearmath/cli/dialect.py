@@ -59,7 +59,7 @@ def dialect_of(machine: MillingMachine, control: str | None, beside: Path | None
         for place in map(beside.with_suffix, dialect.examples.suffixes):
             check_place(place)
             if place.is_dir():
-                raise InputError(f"{place}: cannot be written: Is a directory")
+                raise InputError(f"{place}: cannot be written: is a folder, name a file")
     return dialect
 
 

@@ -68,7 +68,8 @@ class Kernel(Shown):
         if all(quantity.default is not None for quantity in left_out):
             arrays += [np.full(quantity.shape, quantity.default, dtype=float) for quantity in left_out]
         if len(arrays) != len(self.inputs):
-            raise CallError(f"{self.name} takes {len(self.inputs)} arguments, {len(arrays)} were given")
+            names = ", ".join(quantity.name for quantity in self.inputs)
+            raise CallError(f"{self.name}: the arguments are {names}; {len(arrays)} given")
         many = [array.ndim > len(quantity.shape) for array, quantity in zip(arrays, self.inputs, strict=True)]
         is_batch = any(many)
         n = max((len(array) for array, is_many in zip(arrays, many, strict=True) if is_many), default=1)
@@ -91,8 +92,13 @@ class Kernel(Shown):
         return Kernel(self.function.expand(), self.description, self.inputs, self.outputs, self.source, self.requires)
 
     def _shown(self) -> tuple[str, list[Shows]]:
-        given, made = ((q.name for q in quantities) for quantities in (self.inputs, self.outputs))
-        return self.name, [("of", ", ".join(given), ""), ("gives", ", ".join(made), ""), ("what", self.description, "")]
+        given, made = (", ".join(map(_with_unit, some)) for some in (self.inputs, self.outputs))
+        return self.name, [("of", given, ""), ("gives", made, ""), ("meaning", self.description, "")]
+
+
+def _with_unit(quantity: Quantity) -> str:
+    """A quantity by its name, and its unit where it has one of its own: elements of a vector may have several."""
+    return quantity.name if quantity.unit in ("1", "mixed") else f"{quantity.name} [{quantity.unit}]"
 
 
 def _by_columns(array: np.ndarray, n: int, quantity: Quantity) -> np.ndarray:

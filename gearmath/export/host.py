@@ -34,7 +34,8 @@ class CompiledKernel:
         """
         arrays = [np.asarray(argument, dtype=float, order="C") for argument in arguments]
         if len(arrays) != len(self._inputs):
-            raise TypeError(f"{self.name} takes {len(self._inputs)} arguments, {len(arrays)} were given")
+            names = ", ".join(name for name, _, _ in self._inputs)
+            raise TypeError(f"{self.name}: the arguments are {names}; {len(arrays)} given")
         n, is_many = 1, False
         for array, (_, shape, _) in zip(arrays, self._inputs, strict=True):
             if array.ndim > len(shape):

@@ -140,11 +140,9 @@ class Correction(Shown):
         }
 
     def _shown(self) -> tuple[str, list[Shows]]:
-        figures: list[Shows] = [
-            (f"{flank} RMS", f"{1000 * before:.4g} to {1000 * after:.4g}", "um")
-            for flank, (before, after) in self.rms.items()
-        ]
-        figures += [(f"{flank} {name}", change, reading(name)[1]) for flank, name, change in self.changes]
+        figures: list[Shows] = [(f"{flank} {name}", change, reading(name)[1]) for flank, name, change in self.changes]
+        rms = ", ".join(f"{flank} {1000 * a:.4g} of {1000 * b:.4g}" for flank, (b, a) in self.rms.items())
+        figures.insert(0, ("RMS expected to remain", rms, "um"))
         return f"correction of the {self.measurement.member.name}", figures
 
     def _repr_html_(self) -> str:

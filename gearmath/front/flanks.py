@@ -59,7 +59,9 @@ class FlankSurface(Shown):
 
     def plot(self) -> Figure:
         """The flank in space, seen along the normal of its middle."""
-        from matplotlib.figure import Figure
+        from matplotlib.ticker import MaxNLocator
+
+        from gearmath.plot.figure import Figure
 
         figure = Figure(figsize=(6, 5), layout="constrained")
         axes: Any = figure.add_subplot(projection="3d")
@@ -67,8 +69,14 @@ class FlankSurface(Shown):
         middle = self.normal[self.normal.shape[0] // 2, self.normal.shape[1] // 2]
         azimuth, elevation = math.atan2(middle[1], middle[0]), math.asin(middle[2])
         axes.view_init(math.degrees(elevation), math.degrees(azimuth))
-        axes.set(xlabel="x / mm", ylabel="y / mm", zlabel="z / mm", aspect="equal")
-        axes.set_title(f"{self.member.name}, {self.flank} flank")
+        axes.set(xlabel="x / mm", ylabel="y / mm", zlabel="z / mm")
+        for axis, name in ((axes.xaxis, "x"), (axes.yaxis, "y"), (axes.zaxis, "z")):
+            axis.set_major_locator(MaxNLocator(4))
+            axes.tick_params(name, labelsize=8)
+        axes.set_box_aspect(np.ptp(self.point, axis=(0, 1)), zoom=0.85)  # one scale on all axes
+        figure.suptitle(
+            f"{self.member.name}, {self.flank} flank", x=0.02, ha="left"
+        )  # beside the axes, wherever they end
         return figure
 
     def _shown(self) -> tuple[str, list[Shows]]:

@@ -26,7 +26,7 @@ from gearmath.gearbox.job import ThreadPlan, plan_thread
 from gearmath.gearbox.simulation import Pattern, Simulation, Trace, simulate_job
 from gearmath.gearbox.train import GearboxPlan
 from gearmath.gearbox.train import plan as plan_gear
-from gearmath.shown import Shown, Shows, html_table
+from gearmath.shown import Shown, Shows
 from gearmath.specs.helix import FeedSense, Helix
 from gearmath.specs.hobbing import Hand, HobbingMachine
 from gearmath.specs.ratio import pitch_of
@@ -38,6 +38,10 @@ if TYPE_CHECKING:
 _PER_TURN = Number(unit="mm per turn of the table")
 
 __all__ = ("Job", "choose", "export_teensy", "hob", "load_hobber", "plan")
+
+
+def __dir__() -> list[str]:  # for completion
+    return list(__all__)
 
 
 @checked_call(
@@ -60,7 +64,7 @@ class Job(Shown):
     @property
     def steps_per_count(self) -> Fraction:
         """Motor steps for each count of the encoder, exactly."""
-        return self.plan.exact_pulse_ratio
+        return Fraction(self.plan.steps_numerator, self.plan.steps_denominator)
 
     @checked_call
     def simulate(
@@ -121,9 +125,8 @@ class Job(Shown):
 
         Of a new run, or of a ``trace`` that :meth:`simulate` has filled.
         """
-        from matplotlib.figure import Figure
-
         from gearmath.plot import draw_gearbox_error
+        from gearmath.plot.figure import Figure
 
         if trace is None:
             trace = Trace(edges)
@@ -140,16 +143,17 @@ class Job(Shown):
         plan = self.plan
         what = f"thread of {float(plan.pitch):g} mm" if isinstance(plan, ThreadPlan) else f"gear of {plan.teeth} teeth"
         figures: list[Shows] = [("steps per count", str(self.steps_per_count), ""), ("speed", plan.rpm, "rpm")]
-        figures += [("at most", plan.highest_rpm, "rpm")]
+        figures += [("at most", plan.highest_rpm, "rpm"), ("edges of the encoder", plan.edge_rate_hz, "Hz")]
+        figures += [("steps of the motor", plan.step_rate_hz, "Hz")]
+        if isinstance(plan, ThreadPlan):
+            return f"{what} on the {plan.machine}", [*figures, ("way per step", plan.step_um, "um")]
+        for blank in plan.blanks:
+            sizes = {"blank diameter": blank.blank_diameter, "depth of cut": blank.cut_depth}
+            figures += [(f"{blank.hob}: {name}", size, "mm") for name, size in sizes.items()]
+            if blank.over_pins is not None:
+                pin, length = blank.over_pins.pin, blank.over_pins.length
+                figures += [(f"{blank.hob}: over pins of {pin:.6g} mm", length, "mm")]
         return f"{what} on the {plan.machine}", figures
-
-    def _repr_html_(self) -> str:
-        plain = {key: value for key, value in self.to_dict().items() if isinstance(value, int | float | str)}
-        return html_table(
-            f"job on the {self.plan.machine}",
-            ["figure", "value"],
-            [[key.replace("_", " "), value] for key, value in plain.items()],
-        )
 
 
 def plain_numbers(values: dict[str, Any]) -> dict[str, Any]:

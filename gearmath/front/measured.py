@@ -16,7 +16,7 @@ from gearmath.arguments.known import MEMBER, ORIGIN, SET
 from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.member import Member
-from gearmath.front.progress import Progress, unheard
+from gearmath.front.progress import Begin, Progress, silent, unheard
 from gearmath.front.sets import GearSet, set_of
 from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import evaluate_member
@@ -162,6 +162,7 @@ class Measurement(Shown):
         operator: str | None = None,
         machine: str | None = None,
         probe: str | None = None,
+        begin: Begin = silent,
     ) -> Path:
         """Write the inspection sheet, HTML that prints on A4, of this member or with its ``mate``'s on the same sheet.
 
@@ -174,7 +175,7 @@ class Measurement(Shown):
         mates, seconds = ([measurement_in(one, self.member.gear_set) for one in each] for each in (mate, again))
         said = {"part_number": part_number, "date": date, "operator": operator, "machine": machine, "probe": probe}
         head = {key: text for key, text in said.items() if text is not None}
-        sheet = inspection((self, *mates), [head] * (1 + len(mates)), seconds)
+        sheet = inspection((self, *mates), [head] * (1 + len(mates)), seconds, begin=begin)
         write_text(Path(path), sheet.html)
         return Path(path)
 

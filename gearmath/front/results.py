@@ -30,3 +30,7 @@ __all__ = (
     "Tooth",
     "Uncertainty",
 )
+
+
+def __dir__() -> list[str]:  # for completion
+    return list(__all__)

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
 from gearmath.bevel.contact.local import local
 from gearmath.bevel.contact.mesh import REACH, Mesh
 from gearmath.bevel.contact.pattern import ContactPattern, envelope, pattern
 from gearmath.bevel.contact.report import SIDES, v_h
+from gearmath.plot.figure import Figure
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 _ARCSEC = math.degrees(1) * 3600

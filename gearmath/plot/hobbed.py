@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from gearmath.gearbox.hobbed.inspection import Inspection, MeasuredTrace, PitchRow, Side
 from gearmath.gearbox.hobbed.thread import ThreadTrace
+from gearmath.plot.figure import Figure
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 
 #: Rules with their colors: the gear itself, and the one beside it.

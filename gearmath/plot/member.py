@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from gearmath.plot.figure import Figure
 from gearmath.plot.pitch import draw_pitch, draw_runout
 from gearmath.plot.style import signed
 from gearmath.plot.topography import draw_topography, um_per_row

@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from gearmath.plot.figure import Figure
 from gearmath.plot.member import member_figure
 from gearmath.plot.style import AFTER, BEFORE, INK
 from gearmath.quality.evaluation.member import MemberEvaluation

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from matplotlib.figure import Figure
-
+from gearmath.plot.figure import Figure
 from gearmath.plot.pitch import draw_cumulative, draw_runout, draw_single_pitch
 from gearmath.plot.tooth import ToothFlank, draw_tooth
 from gearmath.plot.topography import draw_topography

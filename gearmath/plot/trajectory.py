@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from gearmath.machine.control.executor import MachinePath
 from gearmath.machine.judging.look_ahead import path_length
 from gearmath.machine.judging.trajectory import Trajectory
+from gearmath.plot.figure import Figure
 from gearmath.plot.style import AFTER, NOMINAL
 from gearmath.specs.milling_machine import MillingMachine
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from gearmath.plot.figure import Figure
 from gearmath.plot.style import AFTER, BEFORE, INK, NOMINAL
 from gearmath.quality.uncertainty.propagation import Uncertain
 

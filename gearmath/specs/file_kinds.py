@@ -49,11 +49,12 @@ def described(model: type[Spec]) -> str | None:
 
 def of_another_kind(values: Mapping[str, Any], model: type[Spec]) -> str | None:
     """The sentence that refuses a file of another kind than that of ``model``; None where it is of no other."""
-    wanted, unknown = described(model), [key for key in values if key not in _fields(model)]
-    if wanted is None or not unknown:  # of its own kind: what is wrong is a value
+    wanted = described(model)
+    if wanted is None or _has_keys_of(values, model):  # of its own kind: what is wrong is a value
         return None
     kind = another_kind(values, model)
-    return kind and f"describes {kind}; the file of {wanted} is wanted; {unknown[0]}: no such key is known there"
+    unknown = [f"; {key}: no such key is known there" for key in values if key not in _fields(model)]
+    return kind and f"describes {kind}; the file of {wanted} is wanted{''.join(unknown[:1])}"
 
 
 def another_kind(values: Mapping[str, Any], model: type[Spec] | None = None) -> str | None:

@@ -123,6 +123,12 @@ def test_a_requirement_on_what_is_no_input_is_refused() -> None:
         Expression("stray", "Requires y.", (x,), ((z, x.symbol),), requires=(y.symbol,))
 
 
+def test_a_symbol_called_as_an_input_that_is_not_its_own_is_told_apart() -> None:
+    x, z = (Quantity(name, "one", "mm", name) for name in "xz")
+    with pytest.raises(ValueError, match=r"another symbol called x than that of its input.*, x\.symbol$"):
+        Expression("stray", "Uses a symbol of its own.", (x,), ((z, sp.Symbol("x") + 1),))
+
+
 def test_shapes_that_disagree_and_names_that_c_would_refuse_are_refused() -> None:
     x = Quantity("x", "a test quantity", "1", "x")
     pair = Quantity("pair", "two of them", "1", "p", shape=(2,))

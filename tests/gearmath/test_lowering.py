@@ -263,7 +263,9 @@ def test_rule_equals_sympy(value: sp.Basic) -> None:
     ids=str,
 )
 def test_operation_without_a_rule_is_refused_by_name(value: sp.Expr) -> None:
-    with pytest.raises(LoweringError, match=f"of_two: no CasADi rule for {type(value).__name__} in "):
+    with pytest.raises(
+        LoweringError, match=f"of_two: no CasADi rule for {type(value).__name__} in .*write it in .*Max"
+    ):
         lower(of_two(1 + 2 * value))
 
 
@@ -328,7 +330,7 @@ def test_no_points_give_no_values(shaped: Kernel) -> None:
 @pytest.mark.parametrize(
     ("arguments", "error", "message"),
     [
-        (([[1, 2, 3]] * 2, [1, 2, 3]), TypeError, "shaped takes 3 arguments, 2 were given"),
+        (([[1, 2, 3]] * 2, [1, 2, 3]), TypeError, "shaped: the arguments are grid, row, factor; 2 given"),
         (([[1, 2, 3]] * 3, [1, 2, 3], 1), ValueError, r"grid has shape \(3, 3\), expected \(2, 3\)"),
         (([[1, 2, 3]] * 2, [1, 2], 1), ValueError, r"row has shape \(2,\), expected \(3,\)"),
         (([[1, 2, 3]] * 2, [[1, 2, 3]] * 4, [1, 2, 3]), ValueError, r"factor has shape \(3,\)"),

@@ -217,7 +217,7 @@ def test_lie_is_refused_by_every_verb_in_one_sentence(command, text, program, tm
 
 def test_directory_and_absent_file_are_refused_by_every_verb(command, program, tmp_path):
     for path, sentence in (
-        (tmp_path, "cannot be read: Is a directory"),
+        (tmp_path, "cannot be read: is a folder, name a file"),
         (tmp_path / "no.csv", "cannot be read: No such"),
     ):
         for verb, arguments in verbs(path, program, tmp_path).items():

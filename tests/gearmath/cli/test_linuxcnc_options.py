@@ -119,6 +119,6 @@ def test_a_changed_configuration_is_not_written_over(command: Command, tmp_path:
 
 def test_a_configuration_that_cannot_be_written_stops_before_the_program(refused: Refused, tmp_path: Path) -> None:
     (tmp_path / "CAL.hal").mkdir()
-    refused("CAL.hal: cannot be written: Is a directory", *CALIBRATE, tmp_path / "CAL.ngc")
+    refused("CAL.hal: cannot be written: is a folder, name a file", *CALIBRATE, tmp_path / "CAL.ngc")
     refused("CAL.ini: --configuration writes that file", *CALIBRATE, tmp_path / "CAL.ini")
     assert [one.name for one in tmp_path.iterdir()] == ["CAL.hal"]

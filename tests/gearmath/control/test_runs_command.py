@@ -292,7 +292,7 @@ def test_chosen_points_are_probed_again_in_one_start_a_stretch(path: Path, comma
         (("export", 1, 2, "-o", "x.csv"), "runs 1, 2: csv takes one run, dfq several"),
         (("export", 1, "--grade", 5, "-o", "x.csv"), r"--grade 5: is for dfq; x\.csv is written as csv"),
         (("export", 1, "-o", "x.txt"), r"x\.txt: --format is missing"),
-        (("export", 1, "-o", "nowhere/x.csv"), "nowhere/x.csv: cannot be written: No such file or directory"),
+        (("export", 1, "-o", "nowhere/x.csv"), "nowhere/x.csv: cannot be written: there is no folder nowhere"),
         (("resume", 1), r"run 1 is complete: --again probes points of it once more"),
         (("resume", 1, "--again", "0"), r"--again 0: 0: must be within 1 to 122"),
         (("resume", 1, "--again", "7-5"), "--again 7-5: 7-5: must be within 1 to 122"),

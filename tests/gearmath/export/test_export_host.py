@@ -54,7 +54,7 @@ def test_shared_arguments_are_broadcast_like_those_of_the_kernel(samples: Callab
 
 def test_wrong_number_and_wrong_shape_of_arguments_are_refused() -> None:
     compiled = compile_kernel(DOUBLE["tool_pose"])
-    with pytest.raises(TypeError, match="tool_pose takes 3 arguments, 1 were given"):
+    with pytest.raises(TypeError, match="tool_pose: the arguments are axes, pivot_height, pivot_offset; 1 given"):
         compiled(np.zeros(5))
     with pytest.raises(ValueError, match=r"axes has shape \(4,\), expected \(5,\)"):
         compiled(np.zeros(4), 0.0, np.zeros(3))

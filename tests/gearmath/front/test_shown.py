@@ -194,7 +194,7 @@ def _returned() -> dict[str, type]:
             else:
                 home, own = _imported(call.__module__).get(name, (None, name))
                 value = getattr(importlib.import_module(home), own) if home else None
-            if inspect.isclass(value) and value.__module__.startswith("gearmath"):
+            if inspect.isclass(value) and value.__module__.startswith("gearmath") and not hasattr(value, "_repr_png_"):
                 found[value.__name__] = value
     return found
 
@@ -233,6 +233,25 @@ def test_the_line_of_a_measurement_has_its_key_figures() -> None:
     assert "points 90" in repr(found)
     assert f"largest deviation {largest:.4g} um" in repr(found)
     assert f"{largest:.6g}" in found._repr_html_()
+
+
+def test_every_figure_is_one_that_jupyter_shows() -> None:
+    assert _measured().plot()._repr_png_().startswith(b"\x89PNG")  # type: ignore[attr-defined]
+    sources = [path.read_text("utf-8") for path in Path(inspect.getfile(gm)).parent.rglob("*.py")]
+    drawing = [text for text in sources if re.search(r"\bFigure\(figsize", text)]
+    assert len(drawing) > 5
+    assert [text for text in drawing if "from gearmath.plot.figure import Figure" not in text] == []
+
+
+def test_steps_per_count_of_a_job_are_those_that_its_rule_makes() -> None:
+    job = gm.hobbing.plan("hobbing_plewes.toml", teeth=17)
+    assert "steps per count 125/544" in repr(job)
+    assert abs(job.simulate(edges=54_400).position - 54_400 * job.steps_per_count) <= 0.5
+
+
+@pytest.mark.parametrize("module", [gm, gm.hobbing, gm.results], ids=lambda one: one.__name__)
+def test_completion_offers_the_names_of_the_front_door_alone(module: Any) -> None:
+    assert set(dir(module)) == set(module.__all__)
 
 
 def test_a_contact_says_at_which_assembly() -> None:
