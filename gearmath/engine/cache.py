@@ -25,11 +25,11 @@ def folder() -> Path | None:
     chosen = os.environ.get(_VARIABLE)
     if chosen == "":
         return None
-    place = Path(chosen) if chosen else _usual()
     try:
+        place = Path(chosen) if chosen else _usual()
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
         return place if _own(place.stat()) else None
-    except OSError:
+    except (OSError, RuntimeError):  # a user of a number alone, as in a container, has no home folder
         return None
 
 

@@ -48,12 +48,16 @@ def build(files: Mapping[str, str], folder: Path, flags: Sequence[str] = FLAGS) 
         (folder / name).write_text(text, "utf-8", newline="\n")
     library = folder / f"libkernels{SUFFIX}"
     sources = [name for name in files if name.endswith(".c")]
-    done = subprocess.run(
-        [*find_compiler(), *flags, *sources, "-o", library.name, "-lm"], cwd=folder, capture_output=True, text=True
-    )
+    command = [*find_compiler(), *flags, *sources, "-o", library.name, "-lm"]
+    try:
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace")
+    except OSError as error:
+        raise ComputationError(f"the C compiler {command[0]} cannot be run: {error.strerror}") from error
     if done.returncode:
         lines = [line for line in done.stderr.splitlines() if "error" in line] or ["no message"]
-        raise ComputationError(f"the C compiler {find_compiler()[0]} failed: {lines[0]}")
+        raise ComputationError(f"the C compiler {command[0]} failed: {lines[0]}")
+    if not library.is_file():
+        raise ComputationError(f"the C compiler {command[0]} wrote no library, and said nothing")
     return library
 
 

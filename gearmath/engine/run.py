@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import ctypes
 import os
+import re
+import shutil
 import sys
 import tempfile
 import threading
@@ -44,6 +46,8 @@ _SMALL, _FEW = 512, 16
 #: Operations of a batch from which it is spread over threads.
 _SPREAD = 2e6
 _ONE = ctypes.c_longlong(1)
+#: What GEARMATH_THREADS may be.
+_COUNT = re.compile(r"[1-9][0-9]{0,3}", re.ASCII)
 
 
 class KernelRunner:
@@ -246,20 +250,38 @@ def _looked_up(name: str) -> ctypes.CDLL | None:
 
 def _loaded(data: bytes) -> ctypes.CDLL:
     """A library from a copy of what was read, or compiled, so that nobody can exchange it in between."""
-    library = Path(tempfile.mkdtemp(prefix="gearmath-")) / f"libkernels{SUFFIX}"
-    library.write_bytes(data)
-    return load(library)
+    folder = Path(tempfile.mkdtemp(prefix="gearmath-"))
+    try:
+        library = folder / f"libkernels{SUFFIX}"
+        library.write_bytes(data)
+        return load(library)
+    except BaseException:  # a full disk, one from which nothing may be run, or no library at all
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def _compiled(name: str, function: ca.Function, many: tuple[bool, ...]) -> ctypes.CDLL | None:
-    """The library compiled now and kept; None where the function has no vector form, or the compiler fails."""
+    """The library compiled now and kept; None where the function has no vector form.
+
+    None also where the compiler fails, or what it makes cannot be loaded: that is said once, and not kept.
+    """
     try:
         with tempfile.TemporaryDirectory(prefix="gearmath-") as folder:
             data = build({"kernel.c": vector_c(function, many)}, Path(folder), FLAGS).read_bytes()
-    except (NoVectorForm, ComputationError):
+        made = _loaded(data)
+    except NoVectorForm:
+        return None
+    except ComputationError as error:
+        _say_slower(str(error))
+        return None
+    except OSError:
+        _say_slower(
+            f"what the C compiler {find_compiler()[0]} makes cannot be loaded from the folder for temporary files: the "
+            "disk is full, nothing may be run from it, or it is no library"
+        )
         return None
     kept.write(name, data)
-    return _loaded(data)
+    return made
 
 
 @cache
@@ -268,24 +290,36 @@ def _can_compile() -> bool:
     try:
         find_compiler()
     except ComputationError as error:
-        print(f"gearmath: {error}; until then kernels run in CasADi's virtual machine, slower", file=sys.stderr)
+        _say_slower(str(error))
         return False
     return True
 
 
 @cache
+def _say_slower(why: str) -> None:
+    """Say why kernels are not compiled, each reason once."""
+    print(f"gearmath: {why}; until then kernels run in CasADi's virtual machine, slower", file=sys.stderr)
+
+
+@cache
 def _threads() -> int:
-    """GEARMATH_THREADS, or as many as there are processors."""
+    """GEARMATH_THREADS, or as many as there are processors; what is no such number is said once."""
     chosen = os.environ.get("GEARMATH_THREADS", "")
-    return (
-        max(1, int(chosen))
-        if chosen.isdigit()
-        else len(os.sched_getaffinity(0))
-        if hasattr(os, "sched_getaffinity")
-        else os.cpu_count() or 1
-    )
+    if _COUNT.fullmatch(chosen):
+        return int(chosen)
+    if chosen:
+        print(
+            f"gearmath: GEARMATH_THREADS = {chosen!r}: must be a whole number from 1 to 9999; all processors are used",
+            file=sys.stderr,
+        )
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @cache
 def _pool() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(_threads())
+
+
+if hasattr(os, "register_at_fork"):
+    # a forked process has none of the threads, and would wait for them for ever
+    os.register_at_fork(after_in_child=_pool.cache_clear)

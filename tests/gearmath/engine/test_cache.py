@@ -64,6 +64,18 @@ def test_an_empty_name_means_no_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     cache.folder.cache_clear()
 
 
+def test_a_user_without_a_home_folder_has_no_cache(monkeypatch: pytest.MonkeyPatch) -> None:
+    def homeless() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("GEARMATH_CACHE", "XDG_CACHE_HOME", "LOCALAPPDATA"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(cache.Path, "home", homeless)
+    cache.folder.cache_clear()
+    assert sys.platform == "win32" or cache.folder() is None
+    cache.folder.cache_clear()
+
+
 def test_keys_tell_apart_where_one_text_ends_and_the_next_begins() -> None:
     assert cache.key("ab", "c") != cache.key("a", "bc") != cache.key("abc")
 

@@ -118,6 +118,61 @@ def test_without_a_compiler_it_is_said_once_and_the_virtual_machine_runs(place, 
         run._can_compile.cache_clear()
 
 
+@pytest.mark.skipif(os.name != "posix", reason="the compilers of this test are shell scripts")
+@pytest.mark.parametrize(
+    ("script", "said"),
+    [
+        ("#!/bin/sh\nexit 1\n", "failed: no message"),
+        ("#!/bin/sh\nprintf 'error \\377' >&2\nexit 1\n", "failed: error"),
+        ("#!/bin/sh\nexit 0\n", "wrote no library"),
+        ("#!/bin/sh\necho rubbish > libkernels.so\necho rubbish > libkernels.dylib\n", "cannot be loaded"),
+        ("no program", "cannot be run"),
+    ],
+)
+def test_a_compiler_that_fails_is_named_once_and_nothing_of_it_is_kept(
+    script: str, said: str, place: Path, tmp_path_factory, monkeypatch, capsys
+) -> None:
+    folder, left = tmp_path_factory.mktemp("bad"), tmp_path_factory.mktemp("left")
+    (folder / "cc").write_text(script)
+    (folder / "cc").chmod(0o755)
+    monkeypatch.setattr(run.tempfile, "tempdir", str(left))
+    for module in (run, compiler):
+        monkeypatch.setattr(module, "find_compiler", lambda: (str(folder / "cc"),))
+    monkeypatch.setattr(run, "identity", lambda: script)
+    monkeypatch.setattr(run, "_ASK", 0.0)
+    monkeypatch.setattr(run, "_COMPILE", 0.0)
+    run._say_slower.cache_clear()
+    expected = run.KernelRunner(rolling(), (True, False)).interpreted(given(5), 5)
+    for _ in range(2):
+        for got, wanted in zip(run.KernelRunner(rolling(), (True, False))(given(5), 5), expected, strict=True):
+            np.testing.assert_array_equal(got, wanted)
+    err = capsys.readouterr().err
+    assert (err.count("gearmath: "), err.count(said)) == (1, 1)
+    assert not list(place.glob("kernel-*"))
+    assert not list(left.iterdir())
+
+
+@pytest.mark.parametrize("chosen", ["0", "-1", "abc", "²", "1.5", "99999999999999999999"])
+def test_a_number_of_threads_that_is_none_is_said(chosen: str, monkeypatch, capsys) -> None:
+    monkeypatch.setenv("GEARMATH_THREADS", chosen)
+    assert run._threads.__wrapped__() == len(os.sched_getaffinity(0))
+    assert f"GEARMATH_THREADS = {chosen!r}: must be a whole number from 1" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+def test_a_forked_process_has_threads_of_its_own() -> None:
+    """Those of its parent are not there any more: it would wait for them for ever."""
+    program = (
+        "import os\nfrom gearmath.engine import run\n"
+        "run._pool().submit(int).result()\n"
+        "if child := os.fork():\n"
+        "    os._exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))\n"
+        "run._pool().submit(int).result(timeout=20)\n"
+        "os._exit(0)\n"
+    )
+    assert subprocess.run([sys.executable, "-W", "ignore", "-c", program]).returncode == 0
+
+
 def test_a_process_with_kept_kernels_loads_no_sympy(place: Path) -> None:
     program = (
         "import sys\nfrom gearmath.kernels import kernel\n"
