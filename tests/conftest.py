@@ -12,9 +12,14 @@ from collections.abc import Generator
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
+from hypothesis import settings
 
 from gearmath.engine.compiler import find_compiler
 from gearmath.errors import ComputationError
+
+# how long an example takes says nothing on a machine that does other things as well
+settings.register_profile("gearmath", deadline=None)
+settings.load_profile("gearmath")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

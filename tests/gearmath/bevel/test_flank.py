@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from gearmath.bevel.flank import Grid, blank_grid, solve_flank, solve_places
@@ -188,7 +187,6 @@ def test_place_that_is_no_number_is_refused(gear_set):
         solve_flank(gear_set.pinion, "convex", Grid(axial, grid.radial))
 
 
-@hypothesis_settings(deadline=None)
 @given(st.floats(-60, 60), st.floats(-60, 60), st.sampled_from(MEMBERS), st.sampled_from(FLANKS))
 def test_no_point_is_returned_that_is_not_in_mesh_at_its_place_and_on_the_blade(
     gear_set, witness, axial_shift, radial_shift, member, flank

@@ -253,7 +253,7 @@ def designs() -> st.SearchStrategy[BlankData]:
     return st.builds(build, st.integers(12, 25), *numbers, tapers)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(designs())
 def test_every_blank_closes(data: BlankData) -> None:
     """In the plane of both axes: cones touch along one line, face and root lines are parallel, teeth fill the pitch."""

@@ -108,7 +108,7 @@ def test_composed_kernel_gets_its_work_memory(same_bits: Callable) -> None:
     assert all(same_bits(ours, casadis) for ours, casadis in zip((root, scaled), kernel(1.0, factors), strict=True))
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.data())
 def test_delivered_steps_are_the_nearest_to_the_exact_position(data: st.DataObject) -> None:
     """Python's own integers: p = floor((2Ne + D)/(2D)), and an error of at most half a step."""

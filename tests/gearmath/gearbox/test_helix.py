@@ -58,7 +58,7 @@ def test_simplest_fraction_of_pi_is_the_one_of_the_tables():
     assert simplest(Fraction(355, 113), 10**9) == Fraction(355, 113)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(value=st.fractions(Fraction(1, 50), 30, max_denominator=10**9), needed=st.integers(51, 10**5))
 def test_no_fraction_of_a_smaller_denominator_is_as_near(value, needed):
     """By trial of every denominator: the nearest numerator of each is too far away."""
@@ -69,7 +69,7 @@ def test_no_fraction_of_a_smaller_denominator_is_as_near(value, needed):
     assert (np.abs(nearest / smaller - float(value)) * needed > 1 - 1e-6).all()
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(
     teeth=st.integers(6, 999),
     angle=st.floats(0.01, 60.0),
@@ -147,7 +147,7 @@ RUNS = st.lists(
 
 
 @pytest.mark.usefixtures("host_compiler")
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(job=JOBS, runs=RUNS)
 def test_compiled_rule_stands_at_the_nearest_step_of_the_rational_sum(job, runs):
     """After every edge of any history of hob and feed, in Fractions."""

@@ -118,7 +118,7 @@ def same(ours: JobRatio, theirs: JobRatio | None, counts_up: int = 1) -> bool:
     return (ours.denominator, hob) == (theirs.denominator, other_hob) and abs(feed - counts_up * other_feed) <= 1
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     teeth=st.integers(6, 999), hundredths=st.integers(1, 6000), left=st.integers(0, 1), size=st.integers(1000, 99_990)
 )
@@ -130,7 +130,7 @@ def test_two_term_jobs(helical, teeth, hundredths, left, size):
     assert same(ours, make(teeth=teeth, helix=hundredths, left=left, size=size), counts_up=-1)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     teeth=st.integers(6, 999),
     hundredths=st.integers(1, 4500),
@@ -165,7 +165,7 @@ def test_spur_jobs(plewes, teeth, starts):
         assert ours == theirs
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(thousandths=st.integers(10, 3000), left=st.integers(0, 1))
 def test_metric_threads(lathe, thousandths, left):
     machine, make = lathe
@@ -173,7 +173,7 @@ def test_metric_threads(lathe, thousandths, left):
     assert ours == make(pitch=thousandths, left=left)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(hundredths=st.integers(850, 99_999), left=st.integers(0, 1))
 def test_inch_threads(lathe, hundredths, left):
     machine, make = lathe

@@ -20,7 +20,7 @@ def jobs(draw):
     return draw(st.integers(1, denominator)), denominator
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(job=jobs(), history=st.lists(st.tuples(st.sampled_from((1, -1)), st.integers(1, 40)), max_size=8))
 def test_position_is_the_nearest_step_after_any_history(step_kernel, job, history):
     """p = floor((2 N e + D)/(2 D)), (7.3), from a_0 = floor(D/2), in the whole numbers of Python."""

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from gearmath.errors import InputError
@@ -99,7 +98,6 @@ def test_windows_line_ends_blank_lines_and_foreign_header_keys_are_read(tmp_path
 number = st.floats(-1e3, 1e3)
 
 
-@hypothesis_settings(deadline=None)
 @given(
     st.lists(
         st.tuples(st.tuples(number, number, number), st.floats(-3, 3), st.floats(-0.5, 0.5)), min_size=1, max_size=9
@@ -222,7 +220,6 @@ def test_file_that_is_not_there_is_refused_by_name(tmp_path):
         read_flank_csv(tmp_path / "m.csv")
 
 
-@hypothesis_settings(deadline=None)
 @given(st.text(max_size=80), st.integers(0, len(TEXT) - 1), st.integers(0, 40))
 def test_no_mutation_of_a_file_brings_anything_but_a_refusal(tmp_path_factory, inserted, place, removed):
     folder = tmp_path_factory.getbasetemp()

@@ -108,7 +108,7 @@ def test_perfect_measurement_needs_no_correction(gear_set):
 
 
 @given(st.sampled_from(MEMBERS), st.sampled_from(FLANKS), st.floats(0, 0.3), st.integers(0, 10**6), st.booleans())
-@hypothesis_settings(max_examples=40, deadline=None)
+@hypothesis_settings(max_examples=40)
 def test_identification_keeps_within_its_bounds_and_never_makes_the_fit_worse(
     gear_set, member, flank, size, seed, smooth
 ):

@@ -163,7 +163,7 @@ draws = st.tuples(
 )
 
 
-@hypothesis_settings(deadline=None, max_examples=10)
+@hypothesis_settings(max_examples=10)
 @given(draws)
 def test_no_point_of_any_sensible_set_is_wrong_and_none_is_missed(sensible, moved_edge, draw):
     try:

@@ -214,7 +214,6 @@ def compound(one):
     return st.tuples(one, SIGNS, one).map("".join) | one.map("({})".format)
 
 
-@settings(deadline=None)
 @given(st.recursive(NUMBERS, compound, max_leaves=12))
 def test_arithmetic_is_that_of_python(text):
     expected = eval(text)
@@ -273,7 +272,7 @@ def test_blocks_that_may_be_skipped_are_counted():
     assert skip_blocks('G0 X1 /\n/N10 X2\n /2 X3\n;/\nMSG("/")') == 2
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(st.binary(max_size=200))
 @example(b"\xff\xfe\0")
 @example(b"G1 X" + b"9" * 100_000)
@@ -359,7 +358,7 @@ SHOP = st.sampled_from(
 )
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(st.lists(SHOP, max_size=25).map("".join))
 def test_no_row_of_shop_words_crashes_the_reader(text):
     with contextlib.suppress(InputError):

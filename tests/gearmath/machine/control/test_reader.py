@@ -298,7 +298,7 @@ def test_writer_reader_writer_gives_the_same_text_for_probing(gear_set, member, 
     np.testing.assert_allclose(found, angles, rtol=0, atol=1.1 * 0.5e-6)  # half an increment of A
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(st.integers(0, 2**32 - 1), st.integers(2, 6), st.sampled_from([0.0, 0.5, 12.25]))
 def test_writer_reader_writer_gives_the_same_text_for_any_pass(seed, count, dwell):
     generator = np.random.default_rng(seed)
@@ -339,7 +339,7 @@ def probing_text(gear_set):
     return probing_program(gear_set, "pinion", MACHINE, probe, "PROBE", topography=())
 
 
-@settings(max_examples=200, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=200, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.data())
 def test_no_mutation_of_a_program_crashes_the_reader(probing_text, data):
     place = data.draw(st.integers(0, len(probing_text) - 1))
@@ -398,7 +398,7 @@ CHANGES = st.tuples(
 )
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, 2), st.lists(CHANGES, min_size=1, max_size=3))
 def test_no_mutation_of_a_real_program_crashes_the_control(cutting_texts, which, changes):
     """Up to three changes of bytes, lines or numbers, then the whole of it executed: refused, or a finite path."""

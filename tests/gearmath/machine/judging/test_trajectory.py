@@ -98,7 +98,7 @@ def test_a_curve_is_as_fast_as_its_bend_allows():
 PLACE = st.integers(-50, 50).map(lambda k: k / 10)
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.lists(st.tuples(PLACE, PLACE), min_size=3, max_size=8, unique=True))
 def test_more_tolerance_is_never_slower_and_no_axis_is_too_fast(points):
     where = line(*points)

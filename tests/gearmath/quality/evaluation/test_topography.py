@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from hypothesis import given
-from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from gearmath.bevel.nominal_file import flank_header
@@ -51,7 +50,6 @@ def test_each_coefficient_is_found_in_its_place(plane, index):
 
 
 def test_every_cubic_surface_is_found_again(plane):
-    @hypothesis_settings(deadline=None)
     @given(st.lists(coefficient, min_size=10, max_size=10))
     def check(wanted):
         topography = evaluate_topography(plane(lambda X, Y: cubic(wanted, X, Y)), "concave")

@@ -22,7 +22,7 @@ def lattice(rows, columns, lean=0.0, skew=0.0, fan=0.0, noise=0.0, seed=0):
     return across[order], up[order], row[order], col[order]
 
 
-@hypothesis_settings(deadline=None, max_examples=40)
+@hypothesis_settings(max_examples=40)
 @given(
     rows=st.integers(3, 9),
     columns=st.integers(3, 15),
