@@ -198,9 +198,10 @@ class _Watch:
         """How far [mm] points (m,3) at least lie from a cylinder that stands on the gauge line; negative in it."""
         height, _, pivot = self._place
         axis, up = kernel("probe_tip")(poses, height, np.zeros(3), pivot)
-        off = ring - axis[:, None]
-        along = np.einsum("pqk,pk->pq", off, up)
-        radius = np.sqrt(np.maximum((off**2).sum(axis=2) - along**2, 0.0))
+        # by products of matrices instead of an array (p,m,3)
+        along = up @ ring.T - np.einsum("pk,pk->p", axis, up)[:, None]
+        square = np.einsum("pk,pk->p", axis, axis)[:, None] - 2 * axis @ ring.T + np.einsum("mk,mk->m", ring, ring)
+        radius = np.sqrt(np.maximum(square - along**2, 0.0))
         below, beside = self.calibration.length - along, radius - self.spindle_radius
         outside = np.hypot(np.maximum(below, 0.0), np.maximum(beside, 0.0))
         return float((outside + np.minimum(np.maximum(below, beside), 0.0)).min())
