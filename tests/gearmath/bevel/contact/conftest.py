@@ -66,7 +66,9 @@ class Field:
     def azimuth(self, across: np.ndarray, up: np.ndarray) -> np.ndarray:
         x = (2 * across - 1) / (1 + 2 * _BEYOND_ACROSS)
         y = (2 * (up - self.lowest) / (1 - self.lowest) - 1) / (1 + 2 * _BEYOND_UP)
-        return chebyshev.chebval2d(x, y, self.coefficients)
+        # as a product of matrices, many times faster than NumPy's chebval2d
+        of_x, of_y = (chebyshev.chebvander(one, _DEGREE) for one in (x, y))
+        return np.einsum("...j,...j->...", of_x @ self.coefficients, of_y).reshape(np.shape(across))
 
 
 def _fractions(x: np.ndarray, y: np.ndarray, lowest: float) -> tuple[np.ndarray, np.ndarray]:
