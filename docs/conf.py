@@ -32,6 +32,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence"]
 myst_heading_anchors = 3
 nb_execution_mode = "off"  # `prepare` takes them as `make notebooks` ran them, and runs what is missing
 nb_merge_streams = True
+nb_render_markdown_format = "myst"  # tables and equations of outputs, too
 nb_ipywidgets_js: dict[str, dict[str, str]] = {}  # no script from elsewhere, and no Python behind a page
 _WIDGET = "application/vnd.jupyter.widget-view+json"
 
@@ -70,6 +71,7 @@ def prepare(app: Sphinx) -> None:
         fresh = executed.is_file() and executed.stat().st_mtime > source.stat().st_mtime
         notebook = nbformat.read(executed if fresh else source, as_version=4)
         if not fresh:
+            print(f"runs {source.name}", flush=True)  # some take half a minute
             NotebookClient(notebook, timeout=120, resources={"metadata": {"path": str(source.parent)}}).execute()
         for output in (output for cell in notebook.cells for output in cell.get("outputs", ())):
             if _WIDGET in output.get("data", {}):

@@ -1,6 +1,15 @@
 """gearmath: gear cutting from first principles to metal.
 
-``import gearmath as gm`` loads nothing: each name below is loaded when it is used, every chapter is derived when it is.
+    import gearmath as gm
+
+    pair = gm.load_set("nasa_tp3096_12x36.toml")  # a bundled set, or a file
+    off = pair.pinion.with_settings(concave={"radial_distance": +0.05})  # mm
+    measured = off.deviations()
+    measured.plot()
+    measured.compensate()
+
+What a call returns tells its figures where it is printed, and shows them as a table in Jupyter. docs/api.md has all
+names. Importing loads nothing: each name is loaded when it is used, every chapter is derived when it is.
 """
 
 from __future__ import annotations

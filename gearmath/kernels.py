@@ -26,13 +26,13 @@ def kernel(name: str) -> Kernel:
     """The Kernel of the Expression called ``name``: derived and lowered once, then kept in the cache of this user.
 
     What is kept was made from the very text of all chapters and of the lowering, by the same SymPy and CasADi; when one
-    of them changes it is made again. Raises InputError where no chapter has an expression of this name.
+    of them changes it is made again. ``derivations.index()`` has all names, by chapter. Raises InputError where no
+    chapter has an expression of this name.
     """
     if name not in derivations.index():
         near = difflib.get_close_matches(name, derivations.index(), 3)
-        raise InputError(
-            f"{name!r}: no chapter has an expression of this name" + (f"; near are {', '.join(near)}" if near else "")
-        )
+        nearest = f"near are {', '.join(near)}" if near else "derivations.index() has all"
+        raise InputError(f"{name!r}: no chapter has an expression of this name; {nearest}")
     file = f"{name}-{_origin()}.json"
     data = kept.read(file)
     if data is not None:

@@ -98,7 +98,10 @@ def _check_ours(folder: Path, target: Path) -> None:
         if name == MANIFEST and known:
             continue
         if name not in known:
-            raise InputError(f"{folder}: holds {name}, which no {MANIFEST} of gearmath lists; name another folder")
+            raise InputError(
+                f"{folder}: holds {name}, which gearmath did not write, and it would be lost; move it away, or name "
+                "another folder"
+            )
         if _sha256(_read(folder, target / name)) != known[name]:
             raise InputError(
                 f"{folder}: {name} was changed since gearmath wrote it, and would be lost; move it away, or name "

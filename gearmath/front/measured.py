@@ -226,6 +226,8 @@ def load_measurement(path: str | Path, member: Member | GearSet | str | Path) ->
 
     Raises InputError, also where it was measured against other nominal flanks.
     """
+    if member in ("pinion", "gear"):
+        raise InputError(f"member = {member!r}: must be the member itself, such as load_set(...).{member}, or its set")
     file = read_flank_csv(Path(path))
     one = member if isinstance(member, Member) else set_of(member).member(file.member)
     if file.member != one.name:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from gearmath.gearbox.hobbed.inspection import Inspection, MeasuredTrace, PitchRow, Side
 from gearmath.gearbox.hobbed.thread import ThreadTrace
@@ -86,6 +87,7 @@ def _pitch(axes: Axes, side: Side, gears: Sequence[tuple[str, Inspection]]) -> N
             teeth, (row.position - row.position.mean()) * 1000, color=color, linewidth=0.9, label=_figures(name, row)
         )
     axes.set_title(f"pitch, {side} flank: bars single, line cumulative", fontsize=9)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     _finish(axes, "tooth", "deviation / µm")
 
 
@@ -97,6 +99,7 @@ def _runout(axes: Axes, gears: Sequence[tuple[str, Inspection]]) -> None:
     for (name, found), color in zip(gears, _COLORS, strict=False):
         axes.plot(found.ball * 1000, color=color, linewidth=0.9, label=f"{name}: F_r {found.runout * 1000:.1f} µm")
     axes.set_title("runout: ball in every space", fontsize=9)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     _finish(axes, "space", "deviation / µm")
 
 

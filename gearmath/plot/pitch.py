@@ -63,30 +63,30 @@ def draw_cumulative(axes: Axes, pitch: Pitch, after: Pitch | None = None) -> Non
 
 def draw_pitch(axes: Axes, before: Sequence[Pitch], after: Sequence[Pitch] = ()) -> None:
     """Cumulative pitch deviation of both flanks in one diagram, in µm."""
-    for pitches, color, label in ((before, BEFORE, "before"), (after, AFTER, "after")):
+    for pitches, color, label in ((before, BEFORE, "before, " if after else ""), (after, AFTER, "after, ")):
         for pitch, style in zip(pitches, ("-", "--"), strict=False):
-            text = f"{label}, {pitch.flank}: F_p {or_withheld(pitch.total)}"
+            text = f"{label}{pitch.flank}: F_p {or_withheld(pitch.total)}"
             axes.plot(pitch.cumulative * 1000, style, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
     axes.axhline(0, color=NOMINAL, linewidth=0.6)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("tooth", fontsize=8)
     axes.set_ylabel("cumulative pitch deviation / µm", fontsize=8)
     axes.tick_params(labelsize=8)
     axes.legend(fontsize=8, frameon=False)
 
 
-def draw_runout(
-    axes: Axes, before: Runout, after: Runout | None = None, names: tuple[str, str] = ("before", "after")
-) -> None:
+def draw_runout(axes: Axes, before: Runout, after: Runout | None = None) -> None:
     """Movement of a ball in every space, normal to the pitch cone, in µm, and the first harmonic through it, dashed."""
-    for runout, color, label in ((before, BEFORE, names[0]), (after, AFTER, names[1])):
+    for runout, color, label in ((before, BEFORE, "before: " if after else ""), (after, AFTER, "after: ")):
         if runout is None:
             continue
         size, direction = runout.eccentricity
         wave = float(np.nanmean(runout.shift)) + size * np.cos(runout.azimuth - direction)
-        text = f"{label}: F_r {or_withheld(runout.total)}"
+        text = f"{label}F_r {or_withheld(runout.total)}"
         axes.plot(runout.shift * 1000, color=color, linewidth=1.2, marker=".", markersize=3, label=text)
         text = f"harmonic {size * 1000:.1f} µm at {np.degrees(direction):.0f}°"
         axes.plot(wave * 1000, "--", color=color, linewidth=0.8, label=text)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("space", fontsize=8)
     axes.set_ylabel("ball, normal to the pitch cone / µm", fontsize=8)
     axes.tick_params(labelsize=8)

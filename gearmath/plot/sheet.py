@@ -40,7 +40,7 @@ def runout_chart(runout: Runout) -> Figure:
     """Movement of a ball in every space."""
     figure = Figure(figsize=(_WIDTH, 2.15), layout="constrained")
     axes = figure.subplots()
-    draw_runout(axes, runout, names=("measured", ""))
+    draw_runout(axes, runout)
     axes.set_ylabel("movement / µm", fontsize=8)  # the caption says of what
     return figure
 

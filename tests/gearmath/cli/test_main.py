@@ -87,6 +87,11 @@ def test_bad_arguments_are_status_2_and_one_line(
     assert part in err
 
 
+def test_a_slip_in_the_name_of_a_verb_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(capsys, "evalute", "x.csv") == (2, "", "gearmath: No such command 'evalute'. Did you mean 'evaluate'?\n")
+    assert run(capsys, "zzzz") == (2, "", "gearmath: No such command 'zzzz'.\n")
+
+
 def test_help_lists_every_verb_with_its_line(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, err = run(capsys, "--help")
     assert (status, err) == (0, "")

@@ -278,6 +278,8 @@ def test_a_measurement_of_another_set_or_of_the_same_member_is_refused(tmp_path:
     file = measured.to_csv(tmp_path / "pinion.csv")
     with pytest.raises(gm.InputError, match=r"pinion.csv: member_teeth = 12: the pinion of the set has 7"):
         gm.load_measurement(file, "spiral_7x43.toml")
+    with pytest.raises(gm.InputError, match=r"member = 'pinion': must be the member itself, such as .*\.pinion, or"):
+        gm.load_measurement(file, "pinion")
     with pytest.raises(gm.InputError, match="mate: is a measurement of the pinion too"):
         measured.compensate(mate=measured)
     with pytest.raises(gm.InputError, match="settings = 'fewest': must be one of few, standard, all, radial_distance"):

@@ -226,3 +226,8 @@ def test_picture_shows_both_flanks_pitch_and_runout(pair, pinion):
     assert labels.count("cumulative pitch deviation / µm") == 1
     assert labels.count("ball, normal to the pitch cone / µm") == 1
     assert "eccentricity 15.0 µm, tilt 10.0 µm/100 mm taken out" in figure.get_suptitle()
+    alone = evaluation_figure("pinion", evaluate_member(pair[0], pinion, registered=False))
+    told = [" ".join(a.get_legend_handles_labels()[1]) for each in (figure, alone) for a in each.axes]
+    half = len(told) // 2
+    assert [("before" in words, "after" in words) for words in told[:half]] == [(True, True)] * half
+    assert not any("before" in words for words in told[half:])  # one measurement has nothing that it was before
