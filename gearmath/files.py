@@ -18,7 +18,7 @@ LARGEST = 200_000_000
 
 def check_place(path: Path) -> None:
     """Whether a file can be written to its folder. Raises InputError naming the file where it cannot."""
-    if not path.parent.is_dir():
+    if not os.path.isdir(path.parent):  # no where Path raises: a name too long, a folder that nobody may enter
         raise InputError(f"{path}: cannot be written: No such file or directory")
     try:
         tempfile.TemporaryFile(dir=path.parent).close()  # not os.access, which grants root what no file system does
