@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, cached_property
+from numbers import Real
 from typing import Any
 
 import mpmath
@@ -78,6 +79,12 @@ class Expression:
                 f"quantity, {alike[0]}.symbol"
             )
         if used - given:
+            alike = {str(symbol) for symbol in used - given} & {str(symbol) for symbol in given}
+            if alike:
+                raise InputError(
+                    f"{self.name}: {min(alike)} is no symbol of its inputs, which are known to be real or whole: write "
+                    "the expression with the symbol of the quantity"
+                )
             raise InputError(
                 f"{self.name} uses {sorted(map(str, used - given))}, which are not among its inputs "
                 f"{sorted(known)}: add them to the inputs, or substitute them"
@@ -92,8 +99,12 @@ class Expression:
         yield "description", isinstance(self.description, str) and bool(self.description), "must be text"
         yield "source", isinstance(self.source, str), "must be text"
         yield "inputs", all(isinstance(one, Quantity) for one in _listed(self.inputs)), "must be a tuple of Quantity"
-        pairs = all(len(_listed(one)) == 2 and isinstance(one[0], Quantity) for one in _listed(self.outputs))
-        yield "outputs", pairs, "must be pairs of a Quantity and its expression"
+        kinds = (sp.Basic, sp.MatrixBase, Real)
+        pairs = all(
+            len(_listed(one)) == 2 and isinstance(one[0], Quantity) and isinstance(one[1], kinds)
+            for one in _listed(self.outputs)
+        )
+        yield "outputs", pairs, "must be pairs of a Quantity and its expression, a Matrix where it has a shape"
         yield "requires", all(isinstance(one, sp.Basic) for one in _listed(self.requires)), "must be SymPy expressions"
 
     @staticmethod

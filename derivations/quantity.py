@@ -81,7 +81,8 @@ class Quantity:
         yield "latex", self.latex != "", "must not be empty"
         ordered = _are(self.domain, _is_number) and len(self.domain) == 2 and self.domain[0] < self.domain[1]
         yield "domain", ordered, "must be a tuple of the least and the greatest value, which is more"
-        yield "shape", _are(self.shape, _is_count), "must be a tuple of whole numbers, at least 1"
+        fits = _are(self.shape, _is_count) and len(self.shape) <= 2
+        yield "shape", fits, "must be a tuple of at most two whole numbers, at least 1"
         yield "kind", self.kind in ("real", "int"), "must be 'real' or 'int'"
         yield "values", _are(self.values, _is_number), "must be a tuple of numbers"
         yield "scale", _is_number(self.scale) and 0 < self.scale < math.inf, "must be a finite number, greater than 0"

@@ -35,9 +35,9 @@ def check_writable(path: Path) -> None:
 def _unwritten(path: Path, error: OSError) -> InputError:
     """Why a file cannot be written, in words that say what to do; else as the system has it."""
     why = error.strerror
-    if not path.parent.is_dir():
+    if not os.path.isdir(path.parent):  # where Path raises: a name too long, a folder that nobody may enter
         why = f"there is no folder {path.parent}"
-    elif path.is_dir():
+    elif os.path.isdir(path):
         why = "is a folder, name a file"
     return InputError(f"{path}: cannot be written: {why}")
 

@@ -7,6 +7,7 @@ refused by name, never guessed.
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable, Mapping, Sequence
 
 import casadi as ca
@@ -102,7 +103,7 @@ def _walk(node: sp.Basic, values: Mapping[sp.Basic, ca.SX], name: str) -> ca.SX:
     if node in values:
         return values[node]
     if isinstance(node, sp.Number | sp.NumberSymbol) and node.is_finite:
-        return ca.SX(int(node)) if node.is_Integer else ca.SX(float(node))
+        return _number(node, name)
     if isinstance(node, sp.logic.boolalg.BooleanAtom):
         return ca.SX(1 if node else 0)
     if isinstance(node, sp.Piecewise):
@@ -119,6 +120,13 @@ def _walk(node: sp.Basic, values: Mapping[sp.Basic, ca.SX], name: str) -> ca.SX:
             f"{', '.join(known)}"
         )
     return rule(*(_walk(argument, values, name) for argument in node.args))
+
+
+def _number(node: sp.Basic, name: str) -> ca.SX:
+    value = float(node)  # type: ignore[arg-type]
+    if not math.isfinite(value) or (value == 0 and not node.is_zero):
+        raise LoweringError(f"{name}: the number {sp.N(node, 6)} lies beyond those of double precision")
+    return ca.SX(value)
 
 
 def _pow(node: sp.Pow, values: Mapping[sp.Basic, ca.SX], name: str) -> ca.SX:

@@ -162,7 +162,7 @@ class Place(Plain):
     def refusal(self, name: str, value: object) -> str | None:
         return (
             stated(name, value, "a file must be named, its name is empty")
-            if value == ""
+            if isinstance(value, str) and value == ""
             else super().refusal(name, value)
         )
 

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache
 
 import numpy as np
 
 from gearmath.bevel.generation import Generation, Section, SurfacePoints, solve_curve
 from gearmath.kernels import kernel
+from gearmath.remembered import remembered
 from gearmath.specs.bevel_set import SIDES, Blank, Flank, Member
 
 #: The tip plane of the cutter as a blade: nearly square to its axis, so that it shows where the root is deepest.
@@ -183,7 +184,7 @@ def _along(blank: Blank) -> tuple[float, float]:
     return math.cos(delta), math.sin(delta)
 
 
-@lru_cache(maxsize=64)
+@remembered(64)
 def _heights(blank: Blank) -> tuple[np.ndarray, np.ndarray]:
     """Cone distances (13,) of the places of a trace, and how high the root of the blank lies there [mm]."""
     along, up = _along(blank)

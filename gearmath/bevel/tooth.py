@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from gearmath.bevel.root import ENDS, Widths, mean_place, root_trace, root_width
 from gearmath.bevel.turning import half_turn
 from gearmath.errors import InputError
 from gearmath.kernels import kernel
+from gearmath.remembered import remembered
 from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS, Flank, Member
 
@@ -94,7 +94,7 @@ class ToothSpace(Shown):
         return "tooth space", [*figures, ("root width at the mean", self.root.mean, "mm")]
 
 
-@lru_cache(maxsize=16)
+@remembered(16)
 def tooth_space(
     member: Member, columns: int = DEFAULT_COLUMNS, rows: tuple[tuple[str, int], ...] = _ROWS
 ) -> ToothSpace:

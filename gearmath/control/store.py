@@ -51,12 +51,12 @@ class MeasurementStore(Shown):
         cannot be written, and, unless ``create``, for a file that is not there.
         """
         path = Path(path)
-        if not path.exists() and not create:
+        if not os.path.exists(path) and not create:
             raise InputError(f"{path}: there is no such measurement store")
-        if not path.parent.is_dir():
+        if not os.path.isdir(path.parent):
             raise InputError(f"{path}: cannot be opened: there is no folder {path.parent}")
         check_local(path)
-        is_new = not path.exists()
+        is_new = not os.path.exists(path)
         connection = None
         try:
             # absolute: ":memory:" is a file, too

@@ -60,8 +60,8 @@ class Kernel(Shown):
         left out at the end where their quantities have a default.
         """
         try:
-            arrays = [np.asarray(argument, dtype=float) for argument in arguments]
-        except (TypeError, ValueError) as error:
+            arrays = [_numbers(argument) for argument in arguments]
+        except (TypeError, ValueError, OverflowError) as error:
             names = ", ".join(quantity.name for quantity in self.inputs)
             raise InputError(f"{self.name}: {error}; its arguments are arrays of numbers: {names}") from None
         left_out = self.inputs[len(arrays) :]
@@ -99,6 +99,14 @@ class Kernel(Shown):
 def _with_unit(quantity: Quantity) -> str:
     """A quantity by its name, and its unit where it has one of its own: elements of a vector may have several."""
     return quantity.name if quantity.unit in ("1", "mixed") else f"{quantity.name} [{quantity.unit}]"
+
+
+def _numbers(argument: np.typing.ArrayLike) -> np.ndarray:
+    """An argument as an array of doubles. Raises TypeError or ValueError where it holds what is no number."""
+    array = np.asarray(argument)
+    if array.dtype.kind in "UScMm" or (array.dtype == object and any(one is None for one in array.flat)):
+        raise TypeError(f"{argument!r} is no number")  # NumPy would read text, make NaN of None, and take the real part
+    return np.asarray(array, dtype=float)
 
 
 def _by_columns(array: np.ndarray, n: int, quantity: Quantity) -> np.ndarray:

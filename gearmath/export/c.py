@@ -132,8 +132,10 @@ def _assemble(
 
 
 def _check_names(kernel: Kernel) -> None:
+    if kernel.name.lower() in wrapper.TAKEN:
+        raise ExportError(f"{kernel.name}: gm_{kernel.name} is part of the library, rename the kernel")
     for quantity in (*kernel.inputs, *kernel.outputs):
-        if quantity.name in wrapper.RESERVED:
+        if quantity.name in wrapper.RESERVED or quantity.name.startswith(wrapper.PREFIXES):
             raise ExportError(f"{kernel.name}: the name {quantity.name} is taken in C, rename the quantity")
 
 

@@ -30,11 +30,11 @@ def new_folder(folder: Path) -> Iterator[Path]:
     target = Path(os.path.abspath(folder))
     if Path.cwd().is_relative_to(target):
         raise InputError(f"{folder}: is the current folder or holds it; name a folder to be made")
-    _check_ours(folder, target)
     for parent in target.parents:
-        if parent.exists() and not parent.is_dir():
+        if os.path.exists(parent) and not os.path.isdir(parent):
             raise InputError(f"{folder}: {os.path.relpath(parent)} is a file and not a folder")
     try:
+        _check_ours(folder, target)
         target.parent.mkdir(parents=True, exist_ok=True)
         beside = Path(tempfile.mkdtemp(dir=target.parent, prefix=f".{target.name}."))
     except OSError as error:

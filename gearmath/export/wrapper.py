@@ -13,9 +13,14 @@ _WORDS = """\
     register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while bool
     true false class delete new private protected public template this throw try catch namespace operator virtual
     friend using and or not xor NAN INFINITY n k arg res iw w status now shared margin table bad
-    first_bad"""
-#: Names that a quantity cannot have: words of C and C++, and the variables of the functions below.
+    first_bad asm typeof linux unix errno NULL EOF V"""
+_LIBRARY = "status check lane version nan inside finite error_text abi_version double_literals"
+#: Names that a quantity cannot have: words of C and C++, macros, and the variables of the functions below.
 RESERVED = frozenset(_WORDS.split())
+#: What a name of a quantity cannot begin with: what the library and CasADi define begins so.
+PREFIXES = ("gm_", "GM_", "casadi_")
+#: Names that a kernel cannot have: with gm_ before them they are files and functions of the library.
+TAKEN = frozenset(_LIBRARY.split())
 
 
 @dataclass(frozen=True)

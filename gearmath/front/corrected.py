@@ -14,6 +14,7 @@ from gearmath.arguments.call import checked_call
 from gearmath.bevel.identify.variables import NAMES, reading, variables_of
 from gearmath.bevel.pair import check_corrected
 from gearmath.errors import ComputationError, InputError, about
+from gearmath.files import write_text
 from gearmath.front.evaluated import Evaluation
 from gearmath.front.measured import Measurement, measurement_in
 from gearmath.front.member import Member
@@ -30,8 +31,8 @@ from gearmath.quality.uncertainty.corrected import noise_of_points, point_covari
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
 from gearmath.shown import Shown, Shows, html_table
-from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
-from gearmath.specs.set_text import save_corrected
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS, load_bevel_set
+from gearmath.specs.set_text import save_corrected, set_text
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
@@ -85,12 +86,16 @@ class Correction(Shown):
     def save(self, path: str | Path) -> Path:
         """Write the corrected set as TOML, the nominal settings under ``design``. Raises ComputationError for no pair.
 
-        The rest of the file that the set was read from stays as it is.
+        The rest of the file that the set was read from stays as it is, if that still holds the set.
         """
         measured, found = self.measurement, self.found
         pair = measured.member.gear_set
+        spec = pair.spec.model_copy(update={measured.member.name: measured.member.spec})
         with TemporaryDirectory() as folder:
-            before = pair.save(Path(folder) / "before.toml") if pair.source is None else pair.source
+            before = pair.source
+            if before is None or load_bevel_set(before) != spec:
+                before = Path(folder) / "before.toml"
+                write_text(before, set_text(spec))
             save_corrected(
                 before,
                 Path(path),
@@ -189,7 +194,7 @@ def compensate(
             chosen,
             objective=objective,
             higher_order=higher_order,
-            few=settings == "few",
+            few=isinstance(settings, str) and settings == "few",
             root_limit=root_limit,
             noise=noise_of_points(measured.file, member, found, noise_um),
             added=moved,

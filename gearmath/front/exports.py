@@ -10,7 +10,7 @@ from gearmath.arguments.call import checked_call
 from gearmath.arguments.composed import Each, Either
 from gearmath.arguments.known import EXPRESSION, KERNEL
 from gearmath.engine.kernel import Kernel
-from gearmath.errors import about
+from gearmath.errors import InputError, about
 from gearmath.export.c import contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import export_cnc as _export_cnc
 from gearmath.export.folder import write_folder
@@ -41,11 +41,22 @@ def export_c(
     """
     each = list(what) if isinstance(what, Sequence) else [what]
     made = [one if isinstance(one, Kernel) else _lowered(one) for one in each]
+    _check_apart([one.name for one in made])
     files: dict[str, str] = {}
     for one in made:
         files |= (integer_kernel(one, bits) if bits else double_kernel(one)).files
     write_folder(Path(folder), files if bits else contract_files() | files)
     return [Path(folder) / name for name in files]
+
+
+def _check_apart(names: Sequence[str]) -> None:
+    """Raise InputError where kernels would make the same file or function, as names of one spelling in capitals do."""
+    first: dict[str, str] = {}
+    for name in names:
+        for made in (name, f"{name}_batch"):
+            other = first.setdefault(made.lower(), name)
+            if other is not name or (made == name and list(names).count(name) > 1):
+                raise InputError(f"what: {name} and {other} would both become gm_{made.lower()}: rename one of them")
 
 
 def _lowered(expression: Expression) -> Kernel:

@@ -21,6 +21,7 @@ from gearmath.front.sets import GearSet, set_of
 from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.shown import Shown, Shows
+from gearmath.specs.bevel_set import FLANKS
 from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
 
 if TYPE_CHECKING:
@@ -238,8 +239,23 @@ def load_measurement(path: str | Path, member: Member | GearSet | str | Path) ->
 
 
 def measurement_in(given: Measurement | str | Path, pair: GearSet) -> Measurement:
-    """A measurement, or that of a file, of the member of a pair that the file names."""
-    return given if isinstance(given, Measurement) else load_measurement(given, pair)
+    """A measurement, or that of a file, of the member of a pair that the file names.
+
+    Raises InputError, also where it counts from other nominal flanks than those of the pair.
+    """
+    if not isinstance(given, Measurement):
+        return load_measurement(given, pair)
+    own, member = given.member, pair.member(given.member.name)
+    with about(given.source):
+        if own.teeth != member.teeth:
+            raise InputError(f"member_teeth = {own.teeth}: the {own.name} of the set has {member.teeth}")
+        for flank in FLANKS:
+            counted_from, wanted = (one.spec.flank(flank).nominal.vector for one in (own, member))
+            if not np.allclose(counted_from, wanted, rtol=0, atol=1e-8):  # a set may be of a file with nine decimals
+                raise InputError(
+                    f"{own.name}.{flank}: was measured against other nominal settings than those of the pair"
+                )
+    return given
 
 
 def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurement:
@@ -248,7 +264,6 @@ def deviations(member: Member, grid: tuple[int, int], margin: float) -> Measurem
     from gearmath.bevel.identify.flank_target import predicted
     from gearmath.bevel.nominal_file import flank_header
     from gearmath.quality.correction.target import target_of
-    from gearmath.specs.bevel_set import FLANKS
     from gearmath.specs.flank_csv import flank_file
 
     places = blank_grid(member.spec, *grid, margin)

@@ -15,7 +15,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.grid import listed_grid
 from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import about
-from gearmath.front.changed import changed, check_keys, shallow
+from gearmath.front.changed import as_checked, changed, check_keys, shallow
 from gearmath.front.flanks import FlankSurface, Tooth
 from gearmath.front.progress import Begin, silent
 from gearmath.shown import Shown, Shows, html_table
@@ -48,7 +48,9 @@ class Member(Shown):
     spec: MemberSpec
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "spec", self.spec.named(self.name))  # one that was made by hand was in no set yet
+        if self.gear_set.spec.members.get(self.name) is not self.spec:  # by hand: never checked, of no name yet
+            spec = as_checked(self.spec, f"{self.name} of {self.gear_set.title}")
+            object.__setattr__(self, "spec", spec.named(self.name))
 
     @property
     def teeth(self) -> int:

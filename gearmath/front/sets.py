@@ -14,6 +14,7 @@ from gearmath.arguments.known import ORIGIN
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import about
 from gearmath.files import write_text
+from gearmath.front.changed import as_checked
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.shown import Shown, Shows, html_table
@@ -42,6 +43,9 @@ class GearSet(Shown):
     spec: BevelSet
     source: Path | None = None
     remarks: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spec", as_checked(self.spec, str(self.source or self.spec.title)))
 
     @property
     def title(self) -> str:
@@ -74,8 +78,9 @@ class GearSet(Shown):
     @checked_call(spec=_SPEC)
     def with_spec(self, spec: BevelSet) -> GearSet:
         """The set of other content, which no file has yet. Raises InputError where it is no pair."""
-        check_pair(spec)
-        return GearSet(spec)
+        made = GearSet(spec)
+        check_pair(made.spec)
+        return made
 
     def contact(self, *measured: Measurement | str | Path, **options: Any) -> Contact:
         """How the pair runs at an assembly, on its nominal flanks or on ``measured`` ones of a member or of both.

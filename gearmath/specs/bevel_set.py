@@ -287,6 +287,15 @@ class BevelSet(Sheet):
             raise ValueError(f"pinion and gear are both {self.pinion.hand} hand: a pair has one of each hand")
         return self
 
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> BevelSet:
+        """A copy; one with other values is that of no file, and its members are those that they were put as."""
+        made = super().model_copy(update=update, deep=deep)
+        if update:
+            made.__dict__.pop(_FILE, None)
+            members = [(name, one) for name, one in made.members.items() if isinstance(one, Member)]
+            made.__dict__.update({name: one.named(name) for name, one in members})
+        return made
+
     @property
     def members(self) -> dict[str, Member]:
         """The members that are there, by name."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -81,6 +82,6 @@ def load_control_connection(path: Path) -> ControlConnection:
     for key in ("certificate", "key", "server_certificate"):
         if value := getattr(connection, key):
             paths[key] = str(path.parent / value)
-            if key != "server_certificate" and not Path(paths[key]).is_file():
+            if key != "server_certificate" and not os.path.isfile(paths[key]):
                 raise InputError(f"{path}: {key} = {value!r}: there is no such file")
     return connection.model_copy(update=paths)

@@ -121,7 +121,10 @@ def _save_curvature(table: Any, curvature: float, mm: float) -> None:
 
 
 def set_text(gear_set: BevelSet) -> str:
-    """A gear set as the text of its file, without what has its default value; numbers to nine decimals."""
+    """A gear set as the text of its file, without what has its default value.
+
+    It reads back as the same set to the last digit: what was measured against its flanks belongs to the file, too.
+    """
     values = gear_set.model_dump(exclude_defaults=True)
     for name in (name for name in MEMBERS if name in values):
         if gear_set.member(name).process == "face_hobbing":
@@ -129,15 +132,22 @@ def set_text(gear_set: BevelSet) -> str:
     for member in (values[name] for name in MEMBERS if name in values):
         for table in (member[flank] for flank in FLANKS):
             for settings in (table, *([table["design"]] if "design" in table else [])):
-                settings[ADVANCE] -= member["blank"].get(BEYOND, 0.0)
+                settings[ADVANCE] = _from_crossing(settings[ADVANCE], member["blank"].get(BEYOND, 0.0))
     head = "# Lengths in mm, angles in degrees.\n"
     return head + tomlkit.dumps(_plain(values))
 
 
 def _plain(value: Any) -> Any:
-    """Tables, lists and rounded numbers, without a negative zero."""
+    """Tables, lists and numbers, without a negative zero."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
-    return round(value, 9) + 0.0 if isinstance(value, float) else value
+    return value + 0.0 if isinstance(value, float) else value
+
+
+def _from_crossing(advance: float, beyond: float) -> float:
+    """X_C from the crossing point that is read as this X_p from the apex, to the last digit where one is."""
+    near = advance - beyond
+    beside = (near, math.nextafter(near, math.inf), math.nextafter(near, -math.inf))
+    return next((one for one in beside if one + beyond == advance), near)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import tomllib
 from collections.abc import Callable, Mapping
@@ -106,7 +107,7 @@ def _checked(
 def bundled(name: str) -> Path:
     """The path of a file that comes with the package, by its name in ``gearmath/data``."""
     path = Path(str(resources.files("gearmath") / "data" / name))
-    if not path.is_file():
+    if not os.path.isfile(path):
         known = sorted(entry.name for entry in path.parent.glob("*.toml"))
         raise InputError(f"{name}: cannot be read: there is no such file; bundled are {', '.join(known)}")
     return path
@@ -117,4 +118,5 @@ def find(name: str) -> Path:
     if not name:
         raise InputError("a file must be named, its name is empty")
     path = Path(name)
-    return path if path.is_file() or path.name != name else bundled(name)
+    # os.path says no where Path raises: of a name too long, and in a folder that this user may not enter
+    return path if os.path.isfile(path) or path.name != name else bundled(name)

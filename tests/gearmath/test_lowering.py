@@ -14,6 +14,7 @@ import sympy as sp
 import derivations
 from derivations.expression import Expression, Quantity
 from gearmath.engine.kernel import Kernel
+from gearmath.errors import InputError
 from gearmath.lowering import RULES, LoweringError, lower
 
 DIGITS = 50
@@ -275,6 +276,28 @@ def test_what_is_no_real_number_is_refused(value: sp.Expr) -> None:
         lower(of_two(value))
 
 
+@pytest.mark.parametrize("value", [sp.Integer(10) ** 400, sp.Float("1e5000"), sp.Rational(1, 10**400)])
+def test_a_number_that_no_double_holds_is_refused(value: sp.Expr) -> None:
+    with pytest.raises(LoweringError, match=r"of_two: the number 1\.0*E[+-]\d+ lies beyond"):
+        lower(of_two(value * x))
+
+
+@pytest.mark.parametrize("value", [None, "x", [x]])
+def test_what_is_no_expression_is_refused(value: object) -> None:
+    with pytest.raises(InputError, match="must be pairs of a Quantity and its expression"):
+        of_two(value)  # type: ignore[arg-type]
+
+
+def test_a_symbol_of_the_name_of_an_input_that_is_not_its_own_is_named() -> None:
+    with pytest.raises(InputError, match="of_two: x is no symbol of its inputs, which are known to be real"):
+        of_two(sp.Symbol("x"))
+
+
+def test_a_quantity_of_three_extents_is_refused() -> None:
+    with pytest.raises(InputError, match=r"shape = \(2, 2, 2\): must be a tuple of at most two"):
+        Quantity("x", "a block", "1", "x", shape=(2, 2, 2))
+
+
 def test_piecewise_with_a_gap_is_refused() -> None:
     with pytest.raises(LoweringError, match="without a last case"):
         lower(of_two(sp.Piecewise((x, x > y))))
@@ -334,6 +357,10 @@ def test_no_points_give_no_values(shaped: Kernel) -> None:
         (([[1, 2, 3]] * 3, [1, 2, 3], 1), ValueError, r"grid has shape \(3, 3\), expected \(2, 3\)"),
         (([[1, 2, 3]] * 2, [1, 2], 1), ValueError, r"row has shape \(2,\), expected \(3,\)"),
         (([[1, 2, 3]] * 2, [[1, 2, 3]] * 4, [1, 2, 3]), ValueError, r"factor has shape \(3,\)"),
+        (([[1, 2, 3]] * 2, [1, 2, 3], "1"), ValueError, "shaped: '1' is no number"),
+        (([[1, 2, 3]] * 2, [1, None, 3], 1), ValueError, r"shaped: \[1, None, 3\] is no number"),
+        (([[1, 2, 3]] * 2, [1, 2, 3], np.array([1j])), ValueError, r"shaped: array\(\[0\.\+1\.j\]\) is no number"),
+        (([[1, 2, 3]] * 2, [1, 2, 3], 10**400), ValueError, "shaped: .*too large"),
     ],
 )
 def test_wrong_shape_is_refused_by_name(shaped: Kernel, arguments: tuple, error: type[Exception], message: str) -> None:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from gearmath.bevel.contact.system import System
 from gearmath.bevel.newton import FlankPoints
 from gearmath.bevel.turning import half_turn
 from gearmath.kernels import kernel
+from gearmath.remembered import remembered
 
 _ROWS, _COLUMNS = 9, 17
 #: Which borders of both flanks make an edge.
@@ -86,7 +86,7 @@ def places(system: System, assembly: np.ndarray, rows: int = _ROWS, columns: int
     return Places(rotation, error, lever, x.reshape(*shape, 7), distance.reshape(*shape, -1), along, height)
 
 
-@lru_cache(maxsize=32)
+@remembered(32)
 def _grid(surface: ContactSurface, rows: int, columns: int) -> FlankPoints:
     """Points of a flank on a grid of its blank, row by row; the assembly does not change them."""
     up, across = (

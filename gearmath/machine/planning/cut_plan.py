@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -30,6 +29,7 @@ from gearmath.machine.planning.hobbing import LEAST_TOLERANCE, hobbing_motion, i
 from gearmath.machine.planning.passes import Pass, tooth_angles
 from gearmath.machine.planning.path import DEFAULT_TOLERANCE, Cut, axis_positions, flank_points, within_travel
 from gearmath.machine.planning.rounding import ControlShare, control_share
+from gearmath.remembered import remembered
 from gearmath.specs.bevel_set import BevelSet, Member
 from gearmath.specs.milling_machine import MillingMachine
 
@@ -274,7 +274,7 @@ def _curved_pass(
     return theta, Pass(cut.tool, "", 0, axes, seconds, 0.0, theta, powers[:, 2:].transpose(0, 2, 1))
 
 
-@lru_cache(maxsize=32)
+@remembered(32)
 def middle_of_tooth(member: Member, cut: Cut) -> np.ndarray:
     """The middle of the first flank of a pass (3,)."""
     return flank_points(member, cut.flanks[0], blank_grid(member, 1, 1)).point[0]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import time
 import zipfile
 import zlib
@@ -32,7 +33,7 @@ class Results:
         self.values = np.full((blocks * size, width), np.nan)
         self._asked = blocks
         self._written, self._cost, self._new = time.monotonic(), 0.0, False
-        if path is not None and path.exists():
+        if path is not None and os.path.exists(path):
             self._load(path)
 
     def missing(self) -> list[int]:

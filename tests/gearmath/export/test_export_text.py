@@ -6,6 +6,7 @@ import os
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import casadi as ca
 import pytest
@@ -15,9 +16,11 @@ from hypothesis import strategies as st
 from derivations import gearbox
 from derivations.expression import Quantity
 from gearmath.engine.kernel import Kernel
-from gearmath.export.c import ExportError, double_kernel, integer_kernel
+from gearmath.errors import InputError
+from gearmath.export.c import ExportError, contract_files, double_kernel, integer_kernel
 from gearmath.export.cnc import cnc_kernels
 from gearmath.export.header import comment, kernel_comment
+from gearmath.front.exports import export_c
 from gearmath.lowering import lower
 
 
@@ -77,13 +80,34 @@ def test_large_constant_of_a_64_bit_kernel_is_written_exactly(constant: int) -> 
     assert f"={constant};" in source
 
 
-@pytest.mark.parametrize("name", ["int", "arg", "NAN", "class"])
+@pytest.mark.parametrize("name", ["int", "arg", "NAN", "class", "linux", "NULL", "GM_OK", "casadi_real"])
 def test_name_that_c_has_taken_is_refused(name: str) -> None:
     a = ca.SX.sym("a")
     kernel = Kernel(ca.Function("tiny", [a], [a], [name], ["c"]), "A test.", (whole(name),), (whole("c"),))
     for export in (double_kernel, integer_kernel):
         with pytest.raises(ExportError, match=f"the name {name} is taken in C"):
             export(kernel)
+
+
+def test_a_kernel_cannot_take_the_place_of_a_file_or_function_of_the_library() -> None:
+    own = set(re.findall(r"\bgm_(\w+)", "".join((*contract_files(), *contract_files().values())))) - {"h"}
+    assert {"status", "check", "version", "nan"} <= own
+    for name in sorted(own):
+        a = ca.SX.sym("a")
+        kernel = Kernel(ca.Function(name, [a], [a], ["a"], ["c"]), "A test.", (whole("a"),), (whole("c"),))
+        with pytest.raises(ExportError, match=f"gm_{name} is part of the library"):
+            double_kernel(kernel)
+
+
+def test_kernels_that_would_write_over_each_other_are_refused(tmp_path: Path) -> None:
+    def named(name: str) -> Kernel:
+        a = ca.SX.sym("a")
+        return Kernel(ca.Function(name, [a], [a], ["a"], ["c"]), "A test.", (whole("a"),), (whole("c"),))
+
+    for pair in (("cut", "cut"), ("cut", "Cut"), ("cut", "cut_batch")):
+        with pytest.raises(InputError, match="would both become gm_cut"):
+            export_c([named(name) for name in pair], tmp_path / "c")
+    assert not (tmp_path / "c").exists()
 
 
 def test_what_casadi_cannot_write_as_c_is_refused_by_name(capfd: pytest.CaptureFixture) -> None:
