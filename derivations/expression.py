@@ -75,16 +75,10 @@ class Expression:
         alike = sorted(known & set(map(str, used - given)))
         if alike:
             raise InputError(
-                f"{self.name} uses another symbol called {alike[0]} than that of its input: take the symbol of the "
-                f"quantity, {alike[0]}.symbol"
+                f"{self.name} uses another symbol called {alike[0]} than that of its input, which is known to be "
+                f"real or whole: take the symbol of the quantity, {alike[0]}.symbol"
             )
         if used - given:
-            alike = {str(symbol) for symbol in used - given} & {str(symbol) for symbol in given}
-            if alike:
-                raise InputError(
-                    f"{self.name}: {min(alike)} is no symbol of its inputs, which are known to be real or whole: write "
-                    "the expression with the symbol of the quantity"
-                )
             raise InputError(
                 f"{self.name} uses {sorted(map(str, used - given))}, which are not among its inputs "
                 f"{sorted(known)}: add them to the inputs, or substitute them"
