@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -74,7 +75,8 @@ class Correction(Shown):
     def gear_set(self) -> GearSet:
         """The set with corrected settings, motions, blades and index corrections; the nominal flanks stay."""
         with TemporaryDirectory() as folder:
-            return load_set(self.save(Path(folder) / "corrected.toml"))
+            written = load_set(self.save(Path(folder) / "corrected.toml"))
+        return GearSet(written.spec)  # which no file has yet
 
     @property
     def member(self) -> Member:
@@ -90,9 +92,8 @@ class Correction(Shown):
         measured, found = self.measurement, self.found
         pair = measured.member.gear_set
         with TemporaryDirectory() as folder:
-            before = pair.save(Path(folder) / "before.toml") if pair.source is None else pair.source
             save_corrected(
-                before,
+                _file_of(pair, Path(folder)),
                 Path(path),
                 measured.member.name,
                 found.settings,
@@ -149,6 +150,14 @@ class Correction(Shown):
         rows = [[flank, name, change] for flank, name, change in self.changes]
         remains = ", ".join(f"{f} {1000 * a:.2f} of {1000 * b:.2f} um" for f, (b, a) in self.rms.items())
         return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
+
+
+def _file_of(pair: GearSet, folder: Path) -> Path:
+    """The file that a set was read from, for its comments, where it still holds that set; else one in the folder."""
+    with suppress(InputError):
+        if pair.source is not None and load_set(pair.source).spec == pair.spec:
+            return pair.source
+    return pair.save(folder / "before.toml")
 
 
 @checked_call
