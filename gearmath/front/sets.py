@@ -112,7 +112,7 @@ class GearSet(Shown):
         """Write the set as TOML (mm, degrees), in one step. Raises InputError where the place cannot be written."""
         from gearmath.specs.set_text import set_text
 
-        write_text(Path(path), set_text(self.spec))
+        write_text(Path(path), set_text(self.spec, decimals=None))
         return Path(path)
 
     def to_dict(self) -> dict[str, Any]:

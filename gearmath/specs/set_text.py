@@ -120,8 +120,11 @@ def _save_curvature(table: Any, curvature: float, mm: float) -> None:
         table["blade_spheric_radius"] = round(1 / curvature / mm, 6 if mm == 1 else 8)
 
 
-def set_text(gear_set: BevelSet) -> str:
-    """A gear set as the text of its file, without what has its default value; numbers to nine decimals."""
+def set_text(gear_set: BevelSet, decimals: int | None = 9) -> str:
+    """A gear set as the text of its file, without what has its default value; numbers to nine decimals, or with all.
+
+    Only with all digits is it the same set when it is read, to which measurements of this one belong.
+    """
     values = gear_set.model_dump(exclude_defaults=True)
     for name in (name for name in MEMBERS if name in values):
         if gear_set.member(name).process == "face_hobbing":
@@ -131,13 +134,15 @@ def set_text(gear_set: BevelSet) -> str:
             for settings in (table, *([table["design"]] if "design" in table else [])):
                 settings[ADVANCE] -= member["blank"].get(BEYOND, 0.0)
     head = "# Lengths in mm, angles in degrees.\n"
-    return head + tomlkit.dumps(_plain(values))
+    return head + tomlkit.dumps(_plain(values, decimals))
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, decimals: int | None) -> Any:
     """Tables, lists and rounded numbers, without a negative zero."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: _plain(item, decimals) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return round(value, 9) + 0.0 if isinstance(value, float) else value
+        return [_plain(item, decimals) for item in value]
+    if not isinstance(value, float):
+        return value
+    return (value if decimals is None else round(value, decimals)) + 0.0
