@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,7 +15,6 @@ from gearmath.arguments.call import checked_call
 from gearmath.bevel.identify.variables import NAMES, reading, variables_of
 from gearmath.bevel.pair import check_corrected
 from gearmath.errors import ComputationError, InputError, about
-from gearmath.files import write_text
 from gearmath.front.evaluated import Evaluation
 from gearmath.front.measured import Measurement, measurement_in
 from gearmath.front.member import Member
@@ -31,8 +31,8 @@ from gearmath.quality.uncertainty.corrected import noise_of_points, point_covari
 from gearmath.quality.uncertainty.judged import judged_by_measured
 from gearmath.quality.uncertainty.settings import uncertain_settings
 from gearmath.shown import Shown, Shows, html_table
-from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS, load_bevel_set
-from gearmath.specs.set_text import save_corrected, set_text
+from gearmath.specs.bevel_set import MACHINE_SETTINGS, SETTINGS
+from gearmath.specs.set_text import save_corrected
 
 if TYPE_CHECKING:
     from gearmath.bevel.identify.variables import Bounds
@@ -75,7 +75,8 @@ class Correction(Shown):
     def gear_set(self) -> GearSet:
         """The set with corrected settings, motions, blades and index corrections; the nominal flanks stay."""
         with TemporaryDirectory() as folder:
-            return load_set(self.save(Path(folder) / "corrected.toml"))
+            written = load_set(self.save(Path(folder) / "corrected.toml"))
+        return GearSet(written.spec)  # which no file has yet
 
     @property
     def member(self) -> Member:
@@ -92,12 +93,8 @@ class Correction(Shown):
         pair = measured.member.gear_set
         spec = pair.spec.model_copy(update={measured.member.name: measured.member.spec})
         with TemporaryDirectory() as folder:
-            before = pair.source
-            if before is None or load_bevel_set(before) != spec:
-                before = Path(folder) / "before.toml"
-                write_text(before, set_text(spec))
             save_corrected(
-                before,
+                _file_of(replace(pair, spec=spec), Path(folder)),
                 Path(path),
                 measured.member.name,
                 found.settings,
@@ -154,6 +151,14 @@ class Correction(Shown):
         rows = [[flank, name, change] for flank, name, change in self.changes]
         remains = ", ".join(f"{f} {1000 * a:.2f} of {1000 * b:.2f} um" for f, (b, a) in self.rms.items())
         return html_table(f"expected to remain: {remains}", ["flank", "setting", "change (mm, degree)"], rows)
+
+
+def _file_of(pair: GearSet, folder: Path) -> Path:
+    """The file that a set was read from, for its comments, where it still holds that set; else one in the folder."""
+    with suppress(InputError):
+        if pair.source is not None and load_set(pair.source).spec == pair.spec:
+            return pair.source
+    return pair.save(folder / "before.toml")
 
 
 @checked_call

@@ -20,10 +20,12 @@ from gearmath.errors import about
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, set_of
 from gearmath.shown import Shown, Shows, html_table
+from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.blank_data import load_blank_data
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv
-from gearmath.specs.toml import find
+from gearmath.specs.set_text import set_text
+from gearmath.specs.toml import find, parse
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -63,7 +65,12 @@ def design(path: str | Path, gear: GearSet | str | Path | None = None, begin: Be
     with about(source):
         made, figures, runs = accepted(asked, str(source), None if gear is None else set_of(gear).spec)
         progress(1)
-    return PairDesign(GearSet(made.pair), figures, runs)
+    return PairDesign(_as_typed(made.pair), figures, runs)
+
+
+def _as_typed(pair: BevelSet) -> GearSet:
+    """A set with nine decimals of each number: what is typed at the machine is then what the set says, exactly."""
+    return GearSet(parse(set_text(pair, decimals=9), BevelSet, pair.title))
 
 
 @dataclass(frozen=True, repr=False)
@@ -113,7 +120,7 @@ def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin =
     with about(name):
         found = reversed_set(known, file, f"settings found from the points of {name.name}")
     progress(1)
-    return FoundSettings(known.title, GearSet(found.pair), found)
+    return FoundSettings(known.title, _as_typed(found.pair), found)
 
 
 @dataclass(frozen=True, repr=False)

@@ -120,10 +120,10 @@ def _save_curvature(table: Any, curvature: float, mm: float) -> None:
         table["blade_spheric_radius"] = round(1 / curvature / mm, 6 if mm == 1 else 8)
 
 
-def set_text(gear_set: BevelSet) -> str:
-    """A gear set as the text of its file, without what has its default value.
+def set_text(gear_set: BevelSet, decimals: int | None = None) -> str:
+    """A gear set as the text of its file, without what has its default value; numbers with all digits, or so many.
 
-    It reads back as the same set to the last digit: what was measured against its flanks belongs to the file, too.
+    Only with all digits is it the same set when it is read, to which measurements of this one belong.
     """
     values = gear_set.model_dump(exclude_defaults=True)
     for name in (name for name in MEMBERS if name in values):
@@ -134,16 +134,18 @@ def set_text(gear_set: BevelSet) -> str:
             for settings in (table, *([table["design"]] if "design" in table else [])):
                 settings[ADVANCE] = _from_crossing(settings[ADVANCE], member["blank"].get(BEYOND, 0.0))
     head = "# Lengths in mm, angles in degrees.\n"
-    return head + tomlkit.dumps(_plain(values))
+    return head + tomlkit.dumps(_plain(values, decimals))
 
 
-def _plain(value: Any) -> Any:
+def _plain(value: Any, decimals: int | None) -> Any:
     """Tables, lists and numbers, without a negative zero."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: _plain(item, decimals) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return value + 0.0 if isinstance(value, float) else value
+        return [_plain(item, decimals) for item in value]
+    if not isinstance(value, float):
+        return value
+    return (value if decimals is None else round(value, decimals)) + 0.0
 
 
 def _from_crossing(advance: float, beyond: float) -> float:

@@ -148,6 +148,27 @@ def test_a_program_of_one_space_leaves_what_it_promises() -> None:
     assert "table" in milled.evaluate()._repr_html_()
 
 
+def test_a_set_that_is_saved_is_the_same_when_it_is_loaded(tmp_path: Path) -> None:
+    pair = gm.load_set("nasa_tp3096_12x36.toml")
+    changed = pair.with_member(pair.pinion.with_settings(concave={"radial_distance": 1 / 30}))
+    measured = changed.pinion.deviations((3, 3)).to_csv(tmp_path / "m.csv")
+    assert gm.load_set(changed.save(tmp_path / "changed.toml")).spec == changed.spec
+    assert gm.load_measurement(measured, tmp_path / "changed.toml").member.spec == changed.pinion.spec
+
+
+def test_a_corrected_member_can_be_measured_and_corrected_again(tmp_path: Path) -> None:
+    file = gm.load_set("nasa_tp3096_12x36.toml").save(tmp_path / "set.toml")
+    pair = gm.load_set(file)
+    wanted = pair.pinion.spec.concave.radial_distance
+    member = pair.pinion.with_settings(concave={"radial_distance": +0.05})
+    file.unlink()  # what it was read from may be gone, or another set by then
+    for most in (1e-4, 1e-6):  # mm
+        member = member.deviations().compensate("radial_distance").member
+        assert abs(member.spec.concave.radial_distance - wanted) < most
+    measured = pair.pinion.deviations((3, 3))
+    assert measured.compensate("radial_distance").save(tmp_path / "corrected.toml").is_file()
+
+
 def test_importing_loads_nothing_heavy() -> None:
     program = "import sys, gearmath\nprint([m for m in ('numpy', 'casadi', 'sympy', 'pydantic') if m in sys.modules])"
     said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
