@@ -43,8 +43,11 @@ def _unwritten(path: Path, error: OSError) -> InputError:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write ``text`` (UTF-8, LF) to ``path`` in one step. Raises InputError if the place cannot be written."""
-    write_bytes(path, text.encode("utf-8"))
+    """Write ``text`` (UTF-8, LF) to ``path`` in one step. Raises InputError if the place cannot be written.
+
+    Bytes that are no UTF-8, as the name of another file may hold that the text speaks of, become question marks.
+    """
+    write_bytes(path, text.encode("utf-8", "replace"))
 
 
 def csv_text(head: Sequence[str], rows: Iterable[Iterable[object]]) -> str:

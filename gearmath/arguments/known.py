@@ -105,7 +105,7 @@ KNOWN: dict[str, Kind] = {
     **dict.fromkeys(("registration", "lobing"), Truth()),
     "repeat": Whole(1, MOST_TOUCHES),
     "number": Whole(1, 99_999),
-    "run": Whole(1),
+    "run": Whole(1, 999_999_999),
     # measurements and their correction
     **dict.fromkeys(("registered", "rotated", "higher_order", "advance", "leave_out"), Truth()),
     "settings": Either(

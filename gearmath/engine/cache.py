@@ -26,7 +26,7 @@ def folder() -> Path | None:
     if chosen == "":
         return None
     try:
-        place = Path(chosen) if chosen else _usual()
+        place = Path(chosen).absolute() if chosen else _usual()  # the same when the program changes its folder
         place.mkdir(mode=0o700, parents=True, exist_ok=True)
         return place if _own(place.stat()) else None
     except (OSError, RuntimeError):  # a user of a number alone, as in a container, has no home folder
@@ -38,7 +38,8 @@ def _usual() -> Path:
         return Path(os.environ.get("LOCALAPPDATA") or tempfile.gettempdir()) / "gearmath" / "cache"
     if sys.platform == "darwin":
         return Path.home() / "Library" / "Caches" / "gearmath"
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gearmath"
+    named = os.environ.get("XDG_CACHE_HOME", "")
+    return (Path(named) if os.path.isabs(named) else Path.home() / ".cache") / "gearmath"  # no other counts, says XDG
 
 
 def _own(status: os.stat_result) -> bool:
@@ -63,14 +64,20 @@ def read(name: str) -> bytes | None:
     if place is None:
         return None
     try:
-        with (place / name).open("rb") as stream:
-            if not _own(os.fstat(stream.fileno())):
+        with open(place / name, "rb", opener=_at_once) as stream:
+            status = os.fstat(stream.fileno())
+            if not (_own(status) and stat.S_ISREG(status.st_mode)):
                 return None
             content = stream.read()
     except OSError:
         return None
     digest, data = content[:_DIGEST], content[_DIGEST:]
     return data if hashlib.sha256(data).hexdigest().encode() == digest else None
+
+
+def _at_once(path: str, flags: int) -> int:
+    """A file opened without waiting: a pipe would wait for somebody who writes into it."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def write(name: str, data: bytes) -> None:

@@ -13,7 +13,7 @@ from gearmath.specs.calibration import Calibration, load_calibration
 from gearmath.specs.hobbing import HobbingMachine, load_hobbing_machine
 from gearmath.specs.milling_machine import MillingMachine, load_milling_machine
 from gearmath.specs.simulated_machine import SimulatedMachine, load_simulated_machine
-from gearmath.specs.toml import find
+from gearmath.specs.toml import find, rechecked
 
 if TYPE_CHECKING:
     from gearmath.front.probing import ProbingProgram
@@ -27,6 +27,9 @@ class Machine(Shown):
     """A vertical 5-axis milling machine; ``spec`` is the checked content of its file (docs/machine_files.md)."""
 
     spec: MillingMachine
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "spec", rechecked(self.spec, str(self.spec.name)))
 
     def to_dict(self) -> dict[str, Any]:
         """The machine with the keys of its file, mm and degrees."""
@@ -117,14 +120,18 @@ def machine_of(given: Machine | str | Path | None) -> Machine:
 
 def probe_of(given: Calibration | str | Path | None) -> Calibration:
     """A probe, or that of a file; the bundled one where nothing is given."""
-    return given if isinstance(given, Calibration) else load_probe() if given is None else load_probe(given)
+    if isinstance(given, Calibration):
+        return rechecked(given, "probe")
+    return load_probe() if given is None else load_probe(given)
 
 
 def shop_of(given: SimulatedMachine | str | Path | None) -> SimulatedMachine | None:
     """What is wrong with a simulated machine, or what a file says of it; nothing where nothing is given."""
-    return load_shop(given) if isinstance(given, str | Path) else given
+    if isinstance(given, str | Path):
+        return load_shop(given)
+    return None if given is None else rechecked(given, "shop")
 
 
 def hobber_of(given: HobbingMachine | str | Path) -> HobbingMachine:
     """A hobbing machine or lathe, or that of a file."""
-    return given if isinstance(given, HobbingMachine) else load_hobber(given)
+    return rechecked(given, "machine") if isinstance(given, HobbingMachine) else load_hobber(given)

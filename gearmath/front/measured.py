@@ -22,7 +22,7 @@ from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.shown import Shown, Shows
 from gearmath.specs.bevel_set import FLANKS
-from gearmath.specs.flank_csv import FlankFile, join, read_flank_csv, write_flank_csv
+from gearmath.specs.flank_csv import FlankFile, check_made, join, read_flank_csv, write_flank_csv
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,6 +48,9 @@ class Measurement(Shown):
     member: Member
     file: FlankFile
     source: Path | None = None
+
+    def __post_init__(self) -> None:
+        check_made(self.file)
 
     @staticmethod
     @checked_call

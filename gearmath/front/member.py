@@ -15,7 +15,7 @@ from gearmath.bevel.flank import blank_grid
 from gearmath.bevel.grid import listed_grid
 from gearmath.bevel.nominal_file import nominal_flank
 from gearmath.errors import about
-from gearmath.front.changed import as_checked, changed, check_keys, shallow
+from gearmath.front.changed import changed, check_keys
 from gearmath.front.flanks import FlankSurface, Tooth
 from gearmath.front.progress import Begin, silent
 from gearmath.shown import Shown, Shows, html_table
@@ -23,7 +23,7 @@ from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.bevel_set import Member as MemberSpec
 from gearmath.specs.margins import Margins
 from gearmath.specs.places import read_places
-from gearmath.specs.toml import checked
+from gearmath.specs.toml import checked, given, rechecked
 
 if TYPE_CHECKING:
     from gearmath.exchange.step import WrittenSolid
@@ -49,7 +49,7 @@ class Member(Shown):
 
     def __post_init__(self) -> None:
         if self.gear_set.spec.members.get(self.name) is not self.spec:  # by hand: never checked, of no name yet
-            spec = as_checked(self.spec, f"{self.name} of {self.gear_set.title}")
+            spec = rechecked(self.spec, f"{self.name} of {self.gear_set.title}")
             object.__setattr__(self, "spec", spec.named(self.name))
 
     @property
@@ -90,7 +90,7 @@ class Member(Shown):
             check_keys(self.name, flank, to)
             if to:
                 flanks[flank] = changed(self.spec.flank(flank), to)
-        members = {**shallow(self.gear_set.spec), self.name: {**shallow(self.spec), **flanks}}
+        members = {**given(self.gear_set.spec), self.name: {**given(self.spec), **flanks}}
         return self.gear_set.with_spec(checked(members, BevelSet, self.gear_set.title)).member(self.name)
 
     def as_nominal(self) -> Member:

@@ -11,7 +11,7 @@ from gearmath.arguments.call import checked_call
 from gearmath.arguments.kinds import Record
 from gearmath.arguments.known import KNOWN
 from gearmath.bevel.tooth import SHARP_EDGE, ToothSpace, tooth_space
-from gearmath.errors import InputError
+from gearmath.errors import InputError, about
 from gearmath.files import write_text
 from gearmath.front.machines import Machine, load_machine, shop_of
 from gearmath.front.measured import Measurement, load_measurement
@@ -31,6 +31,7 @@ from gearmath.machine.milling.mill import mill_member
 from gearmath.machine.milling.run import CuttingRun, runs_of
 from gearmath.machine.planning.cut_plan import PLUNGE_FEED, CuttingJob
 from gearmath.machine.planning.targets import teeth_around
+from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.shown import Shown, Shows
 from gearmath.specs.simulated_machine import SimulatedMachine
 
@@ -77,6 +78,13 @@ class Program(Shown):
     name: str
     text: str
     made: CheckedCut | None = field(default=None, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        made = self.made
+        if made is None:
+            return
+        if (made.text, made.plan.machine, made.plan.member) != (self.text, self.machine.spec, self.member.spec):
+            object.__setattr__(self, "made", None)  # the plan is that of another program
 
     @property
     def blocks(self) -> int:
@@ -143,6 +151,9 @@ class Program(Shown):
         member, machine = self.member.spec, self.machine.spec
         if isinstance(milled, str | Path):
             milled = load_measurement(milled, self.member)
+        if milled is not None:
+            with about(milled.source):
+                check_belongs(member, milled.file)
         known = None if milled is None else milled.file
         progress = begin(member.teeth, "space")
         left = metal_faults(self.read, self.path, self.runs, member, machine, self.space, progress, known)

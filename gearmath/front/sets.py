@@ -14,13 +14,12 @@ from gearmath.arguments.known import ORIGIN
 from gearmath.bevel.pair import check_pair, load_pair
 from gearmath.errors import about
 from gearmath.files import write_text
-from gearmath.front.changed import as_checked
 from gearmath.front.member import Member
 from gearmath.front.progress import Begin, silent
 from gearmath.shown import Shown, Shows, html_table
 from gearmath.specs.bevel_set import FLANKS, MEMBERS, SETTINGS, BevelSet
 from gearmath.specs.cut import ANGULAR
-from gearmath.specs.toml import find
+from gearmath.specs.toml import find, rechecked
 
 if TYPE_CHECKING:
     from gearmath.bevel.ease_off import Parts
@@ -45,7 +44,7 @@ class GearSet(Shown):
     remarks: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "spec", as_checked(self.spec, str(self.source or self.spec.title)))
+        object.__setattr__(self, "spec", rechecked(self.spec, str(self.source or self.spec.title)))
 
     @property
     def title(self) -> str:

@@ -117,6 +117,25 @@ class FlankFile:
 
 
 _ARRAYS = ("flank", "tooth", "row", "col", "point", "normal", "deviation", "uncertainty")
+#: By array: the kinds of NumPy that it may be of, and the shape of a point.
+_KINDS = {name: ("U" if name == "flank" else "iu" if name in ("tooth", "row", "col") else "f") for name in _ARRAYS}
+_EACH = {"point": (3,), "normal": (3,)}
+
+
+def check_made(file: FlankFile) -> None:
+    """Raise InputError for what no file could hold: arrays that do not fit each other, header lines left out."""
+    missing = [key for key in HEADER if not isinstance(file.header.get(key), str)]
+    if missing:
+        raise InputError(f"file: header: {missing[0]} is missing, or no text")
+    count = len(file)
+    for name, kinds in _KINDS.items():
+        array, shape = getattr(file, name), (count, *_EACH.get(name, ()))
+        if not isinstance(array, np.ndarray) or array.shape != shape or array.dtype.kind not in kinds:
+            what = {"U": "texts", "iu": "whole numbers", "f": "numbers"}[kinds]
+            raise InputError(f"file: {name}: must be an array {shape} of {what}, for as many points as it has teeth")
+    others = sorted(set(file.flank.tolist()) - set(FLANKS))
+    if others:
+        raise InputError(f"file: flank = {others[0]!r}: must be {' or '.join(FLANKS)}")
 
 
 def join(files: Sequence[FlankFile]) -> FlankFile:

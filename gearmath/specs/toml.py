@@ -95,6 +95,32 @@ def checked(values: Mapping[str, Any], model: type[SpecT], name: str) -> SpecT:
     return _checked(values, model, model.model_validate, name)
 
 
+def rechecked(spec: SpecT, name: str) -> SpecT:
+    """A model as it is, if it could be that of a file: a copy with other values was never checked.
+
+    Raises InputError naming key, value and limit.
+    """
+    made = checked(_tables(spec, f"{name}: "), type(spec), name)
+    return spec if made == spec else made
+
+
+def given(spec: Spec) -> dict[str, Any]:
+    """What was given for a model, its tables as they are."""
+    return {key: getattr(spec, key) for key in type(spec).model_fields if key in spec.model_fields_set}
+
+
+def _tables(spec: Spec, where: str) -> dict[str, Any]:
+    """What was given for a model, tables within tables. Raises InputError naming a key that there is not."""
+    known = type(spec).model_fields
+    unknown = next((key for key in vars(spec) if key not in known and key in spec.model_fields_set), None)
+    if unknown is not None:
+        raise InputError(f"{where}{unknown}: no such key is known here")
+    return {
+        key: _tables(value, f"{where}{key}.") if isinstance(value, Spec) else value
+        for key, value in given(spec).items()
+    }
+
+
 def _checked(
     values: Mapping[str, Any], model: type[SpecT], validate: Callable[[Mapping[str, Any]], SpecT], name: str
 ) -> SpecT:

@@ -48,6 +48,29 @@ def test_nothing_that_others_could_have_written(place: Path) -> None:
     assert cache.folder() is None
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes as POSIX has them")
+def test_nothing_out_of_a_pipe_and_nobody_waits_for_it(place: Path) -> None:
+    cache.write("a", b"content")
+    (place / "a").unlink()
+    os.mkfifo(place / "a", 0o600)
+    assert cache.read("a") is None
+
+
+def test_a_relative_place_stays_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("GEARMATH_CACHE", "kept")
+    cache.folder.cache_clear()
+    cache.write("a", b"content")
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert cache.read("a") == b"content"
+    monkeypatch.delenv("GEARMATH_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", "relative")
+    cache.folder.cache_clear()
+    assert sys.platform == "win32" or cache.folder() != tmp_path / "elsewhere" / "relative" / "gearmath"
+    cache.folder.cache_clear()
+
+
 def test_a_place_that_cannot_be_written_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("GEARMATH_CACHE", str(tmp_path / "file" / "under"))

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import gearmath as gm
-from gearmath.specs.bevel_set import BevelSet
 from gearmath.specs.bevel_set import Member as MemberSpec
 
 
@@ -31,7 +30,7 @@ def with_flank(spec: MemberSpec, **changes: object) -> MemberSpec:
         ({"shaft_angle": math.nan}, "shaft_angle = nan: must be a finite number"),
         ({"title": 5}, "title = 5: must be text"),
         ({"pinion": None, "gear": None}, "holds neither a pinion nor a gear"),
-        ({"pinion": {}}, "pinion.teeth is missing|teeth.* missing"),
+        ({"pinion": {}}, "pinion: .*missing|pinion.*missing"),
         ({"shaft_angel": 90.0}, "shaft_angel: no such key is known here"),
     ],
 )
@@ -126,9 +125,72 @@ def test_an_advance_counted_from_the_crossing_point_reads_back_to_the_last_digit
         assert _from_crossing(read, beyond) + beyond == read
 
 
+def test_tables_in_place_of_records_become_records(pair: gm.GearSet) -> None:
+    tables = pair.spec.model_copy(update={"pinion": pair.spec.pinion.model_dump()})  # type: ignore[union-attr]
+    assert pair.with_spec(tables).pinion.flank("concave", (1, 1)).point.shape == (1, 1, 3)
+
+
+def test_a_machine_that_no_file_may_describe_is_refused() -> None:
+    machine = gm.load_machine()
+    for change, sentence in (
+        ({"tool_length": "x"}, "tool_length = 'x': must be a number"),
+        ({"tool_lenght": 100.0}, "tool_lenght: no such key is known here"),
+    ):
+        with pytest.raises(gm.InputError, match=sentence):
+            replace(machine, spec=machine.spec.model_copy(update=change))
+
+
+def test_a_program_of_another_text_is_not_judged_by_the_plan_of_the_first(pair: gm.GearSet) -> None:
+    program = pair.pinion.program(spaces=[0])
+    assert program.made is not None
+    assert replace(program, name="OTHER").made is program.made
+    for other in (replace(program, text="G1\n"), replace(program, member=pair.gear)):
+        assert other.made is None
+    with pytest.raises(gm.InputError, match="ends without M30"):
+        replace(program, text="G1\n").time()
+    with pytest.raises(gm.InputError, match="member = 'gear' in the measured file: must be 'pinion'"):
+        program.judge(milled=pair.gear.deviations((3, 5)))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("deviation", np.zeros(3), r"deviation: must be an array \(30,\) of numbers"),
+        ("deviation", [0.0] * 30, r"deviation: must be an array \(30,\) of numbers"),
+        ("point", np.zeros((30, 2)), r"point: must be an array \(30, 3\) of numbers"),
+        ("flank", np.full(30, "left"), "flank = 'left': must be concave or convex"),
+        ("header", {}, "header: member is missing"),
+    ],
+)
+def test_a_measurement_of_arrays_that_do_not_fit_is_refused(
+    pair: gm.GearSet, name: str, value: object, sentence: str
+) -> None:
+    measured = pair.pinion.deviations((3, 5))
+    with pytest.raises(gm.InputError, match=sentence):
+        gm.Measurement(pair.pinion, replace(measured.file, **{name: value}))
+
+
+def test_a_name_that_is_no_utf_8_stands_in_a_correction_with_question_marks(pair: gm.GearSet, tmp_path: Path) -> None:
+    file = pair.pinion.deviations((3, 5)).to_csv(tmp_path / "m\udcff.csv")
+    corrected = gm.load_measurement(file, pair).compensate("radial_distance").save(tmp_path / "corrected.toml")
+    assert "from m?.csv" in corrected.read_text("utf-8")
+
+
+def test_a_path_that_cannot_be_looked_at_is_refused_in_a_sentence(pair: gm.GearSet, tmp_path: Path) -> None:
+    for load in (gm.load_set, gm.load_machine, gm.load_blank, gm.design, gm.MeasurementStore.open):
+        for place in ("x" * 300, tmp_path / ("x" * 300)):
+            with pytest.raises(gm.InputError, match=r"x: cannot be (read|opened)"):
+                load(place)
+    with pytest.raises(gm.InputError, match="cannot be written: File name too long"):
+        gm.export_c(gm.kernel("contact_start"), tmp_path / ("x" * 300))
+    with pytest.raises(gm.InputError, match=r"path = array\(.*must be the path of a file"):
+        pair.save(np.zeros(3))  # type: ignore[arg-type]
+    with pytest.raises(gm.InputError, match="must be a finite number of mm or degrees"):
+        pair.pinion.with_settings(concave={"radial_distance": 10**400})
+
+
 def test_what_a_user_writes_into_results_changes_no_later_ones(pair: gm.GearSet) -> None:
     tooth = pair.pinion.tooth(5)
     assert not tooth.space.concave.point.flags.writeable
     with pytest.raises(ValueError, match="read-only"):
         tooth.space.concave.point[:] = 0.0
-    assert isinstance(pair.spec, BevelSet)
