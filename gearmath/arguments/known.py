@@ -61,7 +61,14 @@ KNOWN: dict[str, Kind] = {
     "name": Text(),
     "file": Place("must be the name of a file"),
     "text": Content(),
-    "points": _or_file("gearmath.specs.flank_csv", "FlankFile", "a flank file"),
+    "points": Either(
+        (
+            Record("gearmath.front.measured", "Measurement", "a measurement"),
+            Record("gearmath.specs.flank_csv", "FlankFile", "a flank file"),
+            _FILE,
+        ),
+        "must be a measurement, or a flank file",
+    ),
     # records
     **dict.fromkeys(("pair", "gear_set", "gear"), SET),
     "member": MEMBER,

@@ -17,6 +17,7 @@ from gearmath.bevel.design.reverse import ReversedMember
 from gearmath.bevel.design.reverse_route import ReversedSet, load_known, reversed_set
 from gearmath.bevel.slots import slots_of
 from gearmath.errors import about
+from gearmath.front.measured import Measurement
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, set_of
 from gearmath.shown import Shown, Shows, html_table
@@ -108,14 +109,16 @@ class FoundSettings(Shown):
 
 
 @checked_call
-def settings_of(points: str | Path | FlankFile, data: str | Path, begin: Begin = silent) -> FoundSettings:
+def settings_of(points: str | Path | Measurement | FlankFile, data: str | Path, begin: Begin = silent) -> FoundSettings:
     """The settings of the member with these flanks, and how well they make them, as ``gearmath design --reverse``.
 
-    ``data`` is a file of design data, of a blank, or a gear set: blank and method are taken of it. Raises InputError.
+    ``points`` is a measurement, a flank file or its name; ``data`` a file of design data, of a blank, or a gear set:
+    blank and method are taken of it. Raises InputError.
     """
     known = load_known(find(str(data)))
-    file = points if isinstance(points, FlankFile) else read_flank_csv(Path(points))
-    name = Path("points" if isinstance(points, FlankFile) else points)
+    name = Path(points if isinstance(points, str | Path) else "points")
+    given = points.file if isinstance(points, Measurement) else points
+    file = given if isinstance(given, FlankFile) else read_flank_csv(name)
     progress = begin(1, "member")
     with about(name):
         found = reversed_set(known, file, f"settings found from the points of {name.name}")

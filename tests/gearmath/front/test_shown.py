@@ -142,7 +142,7 @@ EXAMPLES: dict[str, Callable[[], Any]] = {
     "Simulation": lambda: _job().simulate(edges=1000),
     "Uncertain": lambda: _measured().uncertainty(1.0, draws=2000).figures[0],
     "TableRow": lambda: gm.load_blank("blank_iso23509_sample1.toml").rows[0],
-    "FoundSettings": lambda: gm.settings_of(_measured().file, SET),
+    "FoundSettings": lambda: gm.settings_of(_measured(), SET),
     "ReversedMember": lambda: gm.settings_of(_measured().file, SET).found,
     "MachinePath": lambda: _program().path,
     "CuttingRun": lambda: _program().runs[0],
