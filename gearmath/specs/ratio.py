@@ -27,9 +27,10 @@ _PITCH = re.compile(r"\s*(\d+(?:\.\d+|/\d+)?)\s*(mm|tpi|m|dp)\s*\Z")
 
 
 def _rational(value: object, most: int = 10_000) -> Fraction:
-    """A whole number, or text like "5/2". A decimal number is refused: 0.1 is no exact ratio in binary."""
+    """A whole number, text like "5/2", or what was made of it. A decimal number is refused: 0.1 is no exact ratio in
+    binary."""
     wanted = f'must be a whole number, or a fraction in quotes such as "5/2", between 1/1000 and {most}'
-    if isinstance(value, bool) or not isinstance(value, int | str):
+    if isinstance(value, bool) or not isinstance(value, int | str | Fraction):
         raise ValueError(wanted)
     try:
         ratio = Fraction(value)
@@ -49,10 +50,18 @@ def _pulses(value: object) -> Fraction:
 def pitch(value: object) -> Fraction:
     """Pitch [mm] of text such as "2mm", "1.25mm", "8tpi" or "23/2tpi", exactly; an inch is 127/5 mm.
 
-    "1.5m" is that of a worm of module 1.5 mm, "16dp" of diametral pitch 16, with PI for π.
+    "1.5m" is that of a worm of module 1.5 mm, "16dp" of diametral pitch 16, with PI for π. A length that was made of
+    such a text stays as it is.
 
     Raises ValueError where it is none, or outside 1/100 to 100 mm.
     """
+    length = value if isinstance(value, Fraction) else _length(value)
+    if not Fraction(1, 100) <= length <= 100:
+        raise ValueError("must lie between 0.01 mm and 100 mm")
+    return _small(length)
+
+
+def _length(value: object) -> Fraction:
     match = _PITCH.match(value) if isinstance(value, str) else None
     try:
         number = Fraction(match[1]) if match else Fraction(0)
@@ -63,11 +72,7 @@ def pitch(value: object) -> Fraction:
             'must be a pitch such as "2mm", "1.25mm", "8tpi", "23/2tpi", "1.5m" or "16dp", between 0.01 mm and 100 mm'
         )
     length = number if match[2] in ("mm", "m") else EXACT_INCH / number
-    if match[2] in ("m", "dp"):
-        length *= PI
-    if not Fraction(1, 100) <= length <= 100:
-        raise ValueError("must lie between 0.01 mm and 100 mm")
-    return _small(length)
+    return length * PI if match[2] in ("m", "dp") else length
 
 
 def _small(ratio: Fraction) -> Fraction:
