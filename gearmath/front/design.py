@@ -20,9 +20,11 @@ from gearmath.errors import about
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, set_of
 from gearmath.shown import Shown, Shows, html_table
+from gearmath.specs.bevel_set import MEMBERS
 from gearmath.specs.blank_data import load_blank_data
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv
+from gearmath.specs.set_text import to_nine_decimals
 from gearmath.specs.toml import find
 
 if TYPE_CHECKING:
@@ -63,7 +65,8 @@ def design(path: str | Path, gear: GearSet | str | Path | None = None, begin: Be
     with about(source):
         made, figures, runs = accepted(asked, str(source), None if gear is None else set_of(gear).spec)
         progress(1)
-    return PairDesign(GearSet(made.pair), figures, runs)
+    pair = to_nine_decimals(made.pair, MEMBERS if gear is None else ("pinion",))  # a given gear stays what it is
+    return PairDesign(GearSet(pair), figures, runs)
 
 
 @dataclass(frozen=True, repr=False)

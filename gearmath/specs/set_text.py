@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from gearmath.files import read_text, write_text
 from gearmath.specs.bevel_set import ADVANCE, BEYOND, FLANKS, MACHINE_SETTINGS, MEMBERS, SETTINGS, BevelSet, Motion
 from gearmath.specs.cut import ANGULAR, CRADLE_PER_WORK, RATIO, STRAIGHT
 from gearmath.specs.sheet import UNITS, angle_text, unit_of
-from gearmath.specs.toml import parse
+from gearmath.specs.toml import checked, parse
 from gearmath.version import __version__
 
 
@@ -135,6 +135,21 @@ def set_text(gear_set: BevelSet) -> str:
                 settings[ADVANCE] = _from_crossing(settings[ADVANCE], member["blank"].get(BEYOND, 0.0))
     head = "# Lengths in mm, angles in degrees.\n"
     return head + tomlkit.dumps(_plain(values))
+
+
+def to_nine_decimals(gear_set: BevelSet, members: Sequence[str]) -> BevelSet:
+    """A computed set with the numbers of these members to nine decimals: processors differ in what follows."""
+    values = gear_set.model_dump(exclude_unset=True)
+    values |= {name: _rounded(values[name]) for name in members if values.get(name)}
+    return checked(values, BevelSet, gear_set.title)
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return tuple(_rounded(item) for item in value)
+    return round(value, 9) if isinstance(value, float) else value
 
 
 def _plain(value: Any) -> Any:
