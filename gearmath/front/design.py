@@ -21,12 +21,12 @@ from gearmath.front.measured import Measurement
 from gearmath.front.progress import Begin, silent
 from gearmath.front.sets import GearSet, set_of
 from gearmath.shown import Shown, Shows, html_table
-from gearmath.specs.bevel_set import BevelSet
+from gearmath.specs.bevel_set import MEMBERS
 from gearmath.specs.blank_data import load_blank_data
 from gearmath.specs.design import load_design
 from gearmath.specs.flank_csv import FlankFile, read_flank_csv
-from gearmath.specs.set_text import set_text
-from gearmath.specs.toml import find, parse
+from gearmath.specs.set_text import to_nine_decimals
+from gearmath.specs.toml import find
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -66,12 +66,8 @@ def design(path: str | Path, gear: GearSet | str | Path | None = None, begin: Be
     with about(source):
         made, figures, runs = accepted(asked, str(source), None if gear is None else set_of(gear).spec)
         progress(1)
-    return PairDesign(_as_typed(made.pair), figures, runs)
-
-
-def _as_typed(pair: BevelSet) -> GearSet:
-    """A set with nine decimals of each number: what is typed at the machine is then what the set says, exactly."""
-    return GearSet(parse(set_text(pair, decimals=9), BevelSet, pair.title))
+    pair = to_nine_decimals(made.pair, MEMBERS if gear is None else ("pinion",))  # a given gear stays what it is
+    return PairDesign(GearSet(pair), figures, runs)
 
 
 @dataclass(frozen=True, repr=False)
@@ -123,7 +119,7 @@ def settings_of(points: str | Path | Measurement | FlankFile, data: str | Path, 
     with about(name):
         found = reversed_set(known, file, f"settings found from the points of {name.name}")
     progress(1)
-    return FoundSettings(known.title, _as_typed(found.pair), found)
+    return FoundSettings(known.title, GearSet(to_nine_decimals(found.pair, (found.name,))), found)
 
 
 @dataclass(frozen=True, repr=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,7 @@ from gearmath.files import read_text, write_text
 from gearmath.specs.bevel_set import ADVANCE, BEYOND, FLANKS, MACHINE_SETTINGS, MEMBERS, SETTINGS, BevelSet, Motion
 from gearmath.specs.cut import ANGULAR, CRADLE_PER_WORK, RATIO, STRAIGHT
 from gearmath.specs.sheet import UNITS, angle_text, unit_of
-from gearmath.specs.toml import parse
+from gearmath.specs.toml import checked, parse
 from gearmath.version import __version__
 
 
@@ -120,10 +120,10 @@ def _save_curvature(table: Any, curvature: float, mm: float) -> None:
         table["blade_spheric_radius"] = round(1 / curvature / mm, 6 if mm == 1 else 8)
 
 
-def set_text(gear_set: BevelSet, decimals: int | None = None) -> str:
-    """A gear set as the text of its file, without what has its default value; numbers with all digits, or so many.
+def set_text(gear_set: BevelSet) -> str:
+    """A gear set as the text of its file, without what has its default value.
 
-    Only with all digits is it the same set when it is read, to which measurements of this one belong.
+    It reads back as the same set to the last digit: what was measured against its flanks belongs to the file, too.
     """
     values = gear_set.model_dump(exclude_defaults=True)
     for name in (name for name in MEMBERS if name in values):
@@ -134,18 +134,31 @@ def set_text(gear_set: BevelSet, decimals: int | None = None) -> str:
             for settings in (table, *([table["design"]] if "design" in table else [])):
                 settings[ADVANCE] = _from_crossing(settings[ADVANCE], member["blank"].get(BEYOND, 0.0))
     head = "# Lengths in mm, angles in degrees.\n"
-    return head + tomlkit.dumps(_plain(values, decimals))
+    return head + tomlkit.dumps(_plain(values))
 
 
-def _plain(value: Any, decimals: int | None) -> Any:
+def to_nine_decimals(gear_set: BevelSet, members: Sequence[str]) -> BevelSet:
+    """A computed set with the numbers of these members to nine decimals: processors differ in what follows."""
+    values = gear_set.model_dump(exclude_unset=True)
+    values |= {name: _rounded(values[name]) for name in members if values.get(name)}
+    return checked(values, BevelSet, gear_set.title)
+
+
+def _rounded(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _rounded(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return tuple(_rounded(item) for item in value)
+    return round(value, 9) if isinstance(value, float) else value
+
+
+def _plain(value: Any) -> Any:
     """Tables, lists and numbers, without a negative zero."""
     if isinstance(value, dict):
-        return {key: _plain(item, decimals) for key, item in value.items()}
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(item, decimals) for item in value]
-    if not isinstance(value, float):
-        return value
-    return (value if decimals is None else round(value, decimals)) + 0.0
+        return [_plain(item) for item in value]
+    return value + 0.0 if isinstance(value, float) else value
 
 
 def _from_crossing(advance: float, beyond: float) -> float:
