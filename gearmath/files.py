@@ -107,7 +107,7 @@ def read_bytes(path: Path, most: int = LARGEST) -> bytes:
         with path.open("rb") as stream:
             content = stream.read(most + 1)
     except OSError as error:
-        why = "is a folder, name a file" if path.is_dir() else error.strerror
+        why = "is a folder, name a file" if os.path.isdir(path) else error.strerror  # Path raises for a name too long
         raise InputError(f"{path}: cannot be read: {why}") from error
     if len(content) > most:
         raise InputError(f"{path}: is larger than {most / 1e6:g} MB, which is the limit")
