@@ -24,18 +24,22 @@ class Either:
 
 @dataclass(frozen=True)
 class Each:
-    """A list or tuple, of so many at least, each of a kind."""
+    """A list or tuple, of so many at least, each of a kind, and where asked none twice."""
 
     kind: Kind
     words: str
     least: int = 0
+    once: bool = False
 
     def refusal(self, name: str, value: object) -> str | None:
         items = _items(value)
         if items is None or len(items) < self.least:
             return stated(name, value, self.words)
         refused = (self.kind.refusal(name, item) for item in items)
-        return next((why.replace(f"{name} = ", f"{name}: ", 1) for why in refused if why), None)
+        for why in filter(None, refused):
+            return why.replace(f"{name} = ", f"{name}: ", 1)
+        twice = next((item for k, item in enumerate(items) if self.once and item in items[:k]), None)
+        return None if twice is None else f"{name}: {twice} stands there twice"
 
 
 def _items(value: Any) -> Sequence[object] | None:

@@ -100,7 +100,7 @@ KNOWN: dict[str, Kind] = {
     "step": Number(LEAST_STEP, MOST_STEP, "degrees"),
     # programs
     "control": Text("must be the name of a control, such as 'sinumerik' or 'linuxcnc'"),
-    "spaces": Each(Whole(), "must be a list of tooth spaces, such as [0]"),
+    "spaces": Each(Whole(), "must be a list of tooth spaces, such as [0]", once=True),
     **dict.fromkeys(("tolerance", "roughing_stock", "finishing_stock"), Number(unit="mm", finite=False)),
     **dict.fromkeys(("report_tolerance", "flank_tolerance"), Number(1e-5, 1.0, "mm")),
     "feed": Number(unit="mm/min", finite=False),
@@ -108,7 +108,7 @@ KNOWN: dict[str, Kind] = {
     "dry_run": Truth(),
     "blocks": OneOf(("g1", "poly")),
     "cycle": OneOf(("tip", "axes")),
-    "topography": Each(Whole(), "must be a list of teeth, such as (0,)"),
+    "topography": Each(Whole(), "must be a list of teeth, such as (0,)", once=True),
     **dict.fromkeys(("registration", "lobing"), Truth()),
     "repeat": Whole(1, MOST_TOUCHES),
     "number": Whole(1, 99_999),
