@@ -288,7 +288,7 @@ def test_a_measurement_of_another_set_or_of_the_same_member_is_refused(tmp_path:
 
 def test_no_space_is_cut_or_probed_twice() -> None:
     pinion, machine = gm.load_set(SET).pinion, gm.load_machine("vertical_5axis.toml")
-    with pytest.raises(gm.InputError, match="^spaces: 1 stands there twice$"):
+    with pytest.raises(gm.InputError, match=r"^spaces: 1 stands there twice$"):
         pinion.program(machine, spaces=[1, 0, 1])
-    with pytest.raises(gm.InputError, match="^topography: 1 stands there twice$"):
+    with pytest.raises(gm.InputError, match=r"^topography: 1 stands there twice$"):
         pinion.probing(machine, "probe.toml", topography=[1, 0, 1])
