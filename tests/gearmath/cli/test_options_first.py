@@ -10,15 +10,15 @@ NASA = "nasa_tp3096_12x36.toml"
 WRONG = {
     "folder of the program": (
         ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/absent/P.MPF"),
-        r"P\.MPF: cannot be written: No such file",
+        r"P\.MPF: cannot be written: there is no folder .*absent",
     ),
     "folder of the report": (
         ("mill", NASA, "--program", "P.MPF", "-o", "{}/m.csv", "--report", "{}/absent/r.json"),
-        r"r\.json: cannot be written: No such file",
+        r"r\.json: cannot be written: there is no folder .*absent",
     ),
     "folder of the picture": (
         ("evaluate", "m.csv", "--set", NASA, "--plot", "{}/absent/p.png"),
-        r"p\.png: cannot be written: No such file",
+        r"p\.png: cannot be written: there is no folder .*absent",
     ),
     "name of the program": (
         ("nc", "cut", NASA, "--member", "pinion", "-o", "{}/1-bad name.MPF"),
