@@ -35,8 +35,10 @@ from gearmath.errors import ComputationError
 FLAGS = ("-std=gnu99", "-O2", "-march=native", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-shared", "-w")
 #: Operations (of one function, over all its points so far) from which the cache is asked: some ms of virtual machine.
 _ASK = 2e5
-#: Operations from which it is compiled: about a second of virtual machine, which is what compiling takes.
-_COMPILE = 5e7
+#: Operations from which it is compiled: about a second of virtual machine, which is what compiling a function of
+#: ``_LARGE`` operations takes; small ones take this part of it. In the virtual machine a point costs as much as some
+#: operations more.
+_COMPILE, _LARGE, _LEAST_PART, _POINT_COST = 5e7, 4000, 0.2, 30
 #: Operations of a function that does not tell them, such as a map.
 _UNKNOWN = 10_000
 #: Points of one call of the virtual machine: mapped, it copies what they share for each of them.
@@ -76,7 +78,7 @@ class KernelRunner:
         """Outputs (n, size), elements column by column, of arguments (n, size) where many, else (1, size)."""
         work = self._operations * n
         if self._compiled is None and self._spent < np.inf:
-            self._consider(work)
+            self._consider(work + _POINT_COST * n)
         if self._compiled is None:
             return self.interpreted(arguments, n)
         if n == 1:
@@ -162,7 +164,8 @@ class KernelRunner:
             if self._name is None:
                 self._name = _name(self._function, self._many)
                 self._compiled = _looked_up(self._name)
-            if self._compiled is None and self._spent >= _COMPILE:
+            part = min(1.0, _LEAST_PART + self._operations / _LARGE)
+            if self._compiled is None and self._spent >= _COMPILE * part:
                 self._compiled, self._spent = _compiled(self._name, self._function, self._many), np.inf
 
 
