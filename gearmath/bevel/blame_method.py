@@ -24,10 +24,11 @@ def likely_method(members: Members, passes: Callable[[Members], bool]) -> str:
 def _others(members: Members) -> Iterator[tuple[str, Members]]:
     for name, member in members.items():
         other = _OTHER[member.generation]
-        if other == "generated" or not any(_moves(member, flank) for flank in FLANKS):
+        moves = any(member.flank(flank).motion.moves for flank in FLANKS)
+        if other == "generated" or not moves:
             words = f"it would fit with {name}.generation = {other!r}, not {member.generation!r}"
             yield words, {**members, name: member.model_copy(update={"generation": other})}
-        if not any(_moves(member, flank) for flank in FLANKS):
+        if not moves:
             continue
         one, two = (member.flank(flank) for flank in FLANKS)
         exchanged = {"concave": _moving(one, two.motion), "convex": _moving(two, one.motion)}
@@ -39,11 +40,6 @@ def _others(members: Members) -> Iterator[tuple[str, Members]]:
                 for flank, spec in zip(FLANKS, (one, two), strict=True)
             }
             yield f"{words} times {factor:g}", _with(members, name, scaled)
-
-
-def _moves(member: Member, flank: str) -> bool:
-    motion = member.flank(flank).motion
-    return motion.moves
 
 
 def _times(motion: Motion, factor: float) -> Motion:

@@ -50,10 +50,9 @@ class _LazyGroup(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in VERBS:
             if not (name.startswith("-") or ctx.resilient_parsing):
-                from difflib import (
-                    get_close_matches,
-                )  # click looks among commands that are loaded, of which there are none
+                from difflib import get_close_matches
 
+                # click itself looks among commands that are loaded, of which there are none
                 near = get_close_matches(name, VERBS, 1)
                 ctx.fail(f"No such command {name!r}." + "".join(f" Did you mean {one!r}?" for one in near))
             return None

@@ -104,7 +104,8 @@ def _with_unit(quantity: Quantity) -> str:
 def _numbers(argument: np.typing.ArrayLike) -> np.ndarray:
     """An argument as an array of doubles. Raises TypeError or ValueError where it holds what is no number."""
     array = np.asarray(argument)
-    if array.dtype.kind in "UScMm" or (array.dtype == object and any(one is None for one in array.flat)):
+    kind = array.dtype.kind
+    if kind in "UScMm" or (kind == "O" and any(one is None for one in array.flat)):
         raise TypeError(f"{argument!r} is no number")  # NumPy would read text, make NaN of None, and take the real part
     return np.asarray(array, dtype=float)
 

@@ -51,12 +51,12 @@ def export_c(
 
 def _check_apart(names: Sequence[str]) -> None:
     """Raise InputError where kernels would make the same file or function, as names of one spelling in capitals do."""
-    first: dict[str, str] = {}
+    taken: dict[str, str] = {}
     for name in names:
-        for made in (name, f"{name}_batch"):
-            other = first.setdefault(made.lower(), name)
-            if other is not name or (made == name and list(names).count(name) > 1):
-                raise InputError(f"what: {name} and {other} would both become gm_{made.lower()}: rename one of them")
+        for made in (name.lower(), f"{name}_batch".lower()):
+            if made in taken:
+                raise InputError(f"what: {name} and {taken[made]} would both become gm_{made}: rename one of them")
+            taken[made] = name
 
 
 def _lowered(expression: Expression) -> Kernel:

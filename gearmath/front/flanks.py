@@ -74,9 +74,8 @@ class FlankSurface(Shown):
             axis.set_major_locator(MaxNLocator(4))
             axes.tick_params(name, labelsize=8)
         axes.set_box_aspect(np.ptp(self.point, axis=(0, 1)), zoom=0.85)  # one scale on all axes
-        figure.suptitle(
-            f"{self.member.name}, {self.flank} flank", x=0.02, ha="left"
-        )  # beside the axes, wherever they end
+        # beside the axes, wherever they end
+        figure.suptitle(f"{self.member.name}, {self.flank} flank", x=0.02, ha="left")
         return figure
 
     def _shown(self) -> tuple[str, list[Shows]]:

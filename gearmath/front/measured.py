@@ -21,7 +21,7 @@ from gearmath.front.sets import GearSet, set_of
 from gearmath.quality.evaluation.file_checks import check_belongs
 from gearmath.quality.evaluation.member import evaluate_member
 from gearmath.shown import Shown, Shows
-from gearmath.specs.bevel_set import FLANKS
+from gearmath.specs.bevel_set import FLANKS, MEMBERS
 from gearmath.specs.flank_csv import FlankFile, check_made, join, read_flank_csv, write_flank_csv
 
 if TYPE_CHECKING:
@@ -230,7 +230,7 @@ def load_measurement(path: str | Path, member: Member | GearSet | str | Path) ->
 
     Raises InputError, also where it was measured against other nominal flanks.
     """
-    if member in ("pinion", "gear"):
+    if isinstance(member, str) and member in MEMBERS:
         raise InputError(f"member = {member!r}: must be the member itself, such as load_set(...).{member}, or its set")
     file = read_flank_csv(Path(path))
     one = member if isinstance(member, Member) else set_of(member).member(file.member)

@@ -134,31 +134,23 @@ def set_text(gear_set: BevelSet) -> str:
             for settings in (table, *([table["design"]] if "design" in table else [])):
                 settings[ADVANCE] = _from_crossing(settings[ADVANCE], member["blank"].get(BEYOND, 0.0))
     head = "# Lengths in mm, angles in degrees.\n"
-    return head + tomlkit.dumps(_plain(values))
+    return head + tomlkit.dumps(_throughout(values, lambda number: number + 0.0))  # without a negative zero
 
 
 def to_nine_decimals(gear_set: BevelSet, members: Sequence[str]) -> BevelSet:
     """A computed set with the numbers of these members to nine decimals: processors differ in what follows."""
     values = gear_set.model_dump(exclude_unset=True)
-    values |= {name: _rounded(values[name]) for name in members if values.get(name)}
+    values |= {name: _throughout(values[name], lambda number: round(number, 9)) for name in members if values.get(name)}
     return checked(values, BevelSet, gear_set.title)
 
 
-def _rounded(value: Any) -> Any:
+def _throughout(value: Any, change: Callable[[float], float]) -> Any:
+    """Tables and lists with every decimal number in them changed."""
     if isinstance(value, dict):
-        return {key: _rounded(item) for key, item in value.items()}
+        return {key: _throughout(item, change) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return tuple(_rounded(item) for item in value)
-    return round(value, 9) if isinstance(value, float) else value
-
-
-def _plain(value: Any) -> Any:
-    """Tables, lists and numbers, without a negative zero."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    return value + 0.0 if isinstance(value, float) else value
+        return [_throughout(item, change) for item in value]
+    return change(value) if isinstance(value, float) else value
 
 
 def _from_crossing(advance: float, beyond: float) -> float:

@@ -83,3 +83,13 @@ def rings(profile: np.ndarray, azimuths: int = _AZIMUTHS) -> np.ndarray:
     z, r = (np.repeat(values, azimuths) for values in profile.T)
     around = np.tile(angle, len(profile))
     return np.column_stack([r * np.cos(around), r * np.sin(around), z])
+
+
+def seen_from_axes(point: np.ndarray, origin: np.ndarray, axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How far [mm] points (m,3) lie along axes (n,3) from their origins (n,3), and how far beside them: (n,m) each.
+
+    By products of matrices instead of an array (n,m,3): beside an axis, not on it, what that rounds is below 1e-9 mm.
+    """
+    along = axis @ point.T - np.einsum("nk,nk->n", origin, axis)[:, None]
+    squares = np.einsum("nk,nk->n", origin, origin)[:, None] + np.einsum("mk,mk->m", point, point)
+    return along, np.sqrt(np.maximum(squares - 2 * origin @ point.T - along**2, 0.0))

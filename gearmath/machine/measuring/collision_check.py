@@ -21,7 +21,7 @@ import numpy as np
 from gearmath.bevel.turning import turned
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.probe_tip import probe_height
-from gearmath.machine.bodies.profiles import rings, work_profiles
+from gearmath.machine.bodies.profiles import rings, seen_from_axes, work_profiles
 from gearmath.machine.bodies.space_body import SpaceBody
 from gearmath.machine.control.executor import STEP_LIMIT, run_program
 from gearmath.machine.control.expression import refuse
@@ -198,10 +198,7 @@ class _Watch:
         """How far [mm] points (m,3) at least lie from a cylinder that stands on the gauge line; negative in it."""
         height, _, pivot = self._place
         axis, up = kernel("probe_tip")(poses, height, np.zeros(3), pivot)
-        # by products of matrices instead of an array (p,m,3)
-        along = up @ ring.T - np.einsum("pk,pk->p", axis, up)[:, None]
-        square = np.einsum("pk,pk->p", axis, axis)[:, None] - 2 * axis @ ring.T + np.einsum("mk,mk->m", ring, ring)
-        radius = np.sqrt(np.maximum(square - along**2, 0.0))
+        along, radius = seen_from_axes(ring, axis, up)
         below, beside = self.calibration.length - along, radius - self.spindle_radius
         outside = np.hypot(np.maximum(below, 0.0), np.maximum(beside, 0.0))
         return float((outside + np.minimum(np.maximum(below, beside), 0.0)).min())

@@ -16,6 +16,7 @@ import numpy as np
 from gearmath.bevel.turning import half_turn
 from gearmath.kernels import kernel
 from gearmath.machine.bodies.blades import Blades, Edge, crossing
+from gearmath.machine.bodies.profiles import seen_from_axes
 from gearmath.machine.milling.removal import Removal
 
 #: Between two nodes neither A nor C turns further than this. [rad]
@@ -164,10 +165,8 @@ def _passes(
 def _near(poses: tuple[np.ndarray, ...], point: np.ndarray, blades: Blades, reach: float) -> np.ndarray:
     """Whether points (m,3) come near an edge, whatever its direction, between two nodes: (m,n-1)."""
     center, axis = poses
-    # by products of matrices instead of an array (m,n,3): what that rounds is far below the reach
-    height = np.einsum("nk,nk->n", center, axis) - point @ axis.T
-    square = np.einsum("mk,mk->m", point, point)[:, None] - 2 * point @ center.T + np.einsum("nk,nk->n", center, center)
-    radius = np.sqrt(np.maximum(square - height**2, 0.0))
+    along, radius = (part.T for part in seen_from_axes(point, center, axis))
+    height = -along
     way = np.hypot(np.diff(radius, axis=1), np.diff(height, axis=1))
     near = np.zeros(way.shape, dtype=bool)
     for edge in blades.edges:
